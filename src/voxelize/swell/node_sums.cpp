@@ -49,7 +49,7 @@ void PressLayer(const PlanField& sides2, float radius, float straight, PressedLa
         std::memcpy(&word, bits, sizeof(word));
         out.solid |= word << c;
         for (std::size_t level = 1; level < PressedLayer::kFields; ++level) {
-            const auto swell = static_cast<float>(kMostSwell * static_cast<double>(level) / TileSums::kLevels);
+            const auto swell = static_cast<float>(TileSums::kSwells[level - 1]);
             const VF moved = thickness(hn::Max(hn::Sub(side, hn::Set(f, swell)), zero));
             hn::Store(hn::Sub(moved, held), f, out.fields[level].v + c);
         }

@@ -13,8 +13,7 @@ namespace stratum::voxelize {
 constexpr int kSquareCells = 2;
 constexpr int kSquareNodes = kSquareCells + 1;
 
-/// What a layer holds under each point (mm), and what it gains there as outlines move out by (n + 1) / kLevels of
-/// kMostSwell.
+/// What a layer holds under each point (mm), and what it gains there as outlines move out by TileSums::kSwells.
 struct PressedLayer {
     static constexpr std::size_t kFields = 1 + TileSums::kLevels;
     enum class Kind : std::uint8_t {

@@ -149,8 +149,8 @@ double swellThatGains(const SpreadNodes& nodes, std::size_t n, double given) {
     for (std::size_t level = 0; level < nodes.gain.size(); ++level) {
         const auto gain = static_cast<double>(nodes.gain[level][n]);
         if (given <= gain && gain > before) {
-            const double steps = static_cast<double>(level) + (given - before) / (gain - before);
-            return std::min(kMostSwell * steps / TileSums::kLevels, kMostSwell);
+            const double from = level == 0 ? 0 : TileSums::kSwells[level - 1];
+            return std::min(std::lerp(from, TileSums::kSwells[level], (given - before) / (gain - before)), kMostSwell);
         }
         before = std::max(before, gain);
     }

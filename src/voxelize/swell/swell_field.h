@@ -8,8 +8,8 @@
 // are interpolated between nodes kNodeSpacing apart, by nodeShare() along each axis:
 //   1. Sums over each node's tent (its weight in that), by kColumnSamples points of a lattice rule in each
 //      square of two by two cells: what was fed, by the beads' exact volumes along their paths; what the layer holds;
-//      what it gains if its outlines move out by a third, two thirds and all of kMostSwell; and the area of its top, as
-//      far as no layer is welded to it from above.
+//      what it gains if its outlines move out by each of TileSums::kSwells; and the area of its top, as far as no layer
+//      is welded to it from above.
 //   2. Each node's surplus is given to the nodes within kNear cells, in proportion to a tent and to what they can gain.
 //   3. What is left raises the open tops within kUp cells, by Layer::most_rise at most.
 //   4. What is left then goes to what can gain within kFar cells. The rest moves up at its node, from layer to welded
@@ -26,6 +26,7 @@
 #include "gcode/toolpath/toolpath.h"
 #include "voxelize/beads/layer_stack.h"
 #include "voxelize/beads/plan_bins.h"
+#include "voxelize/beads/settling.h"
 
 #include <array>
 #include <atomic>
@@ -60,10 +61,13 @@ constexpr std::size_t nodeIndex(int row, int width, int column) {
 struct TileSums {
     static constexpr int kNodes = kTileCells + 1;
     static constexpr int kLevels = 3;
+    /// mm. Closer where they are small: slits between lines are full after some micrometres, so the gain of a first
+    /// small swell is much larger than that of the next.
+    static constexpr std::array<double, kLevels> kSwells{kMostSwell / 9, kMostSwell * 4 / 9, kMostSwell};
     using Nodes = std::array<float, std::size_t{kNodes} * kNodes>;
     struct Layer {
         Nodes surplus{};                    ///< mm^3, fed less held
-        std::array<Nodes, kLevels> gain{};  ///< mm^3, where outlines move out by (n + 1) / kLevels of kMostSwell
+        std::array<Nodes, kLevels> gain{};  ///< mm^3, where outlines move out by kSwells
         Nodes solid{};                      ///< mm^2 of the plan with plastic; only with crowns
         Nodes open{};                       ///< mm^2 of it with no layer welded to it from above
     };

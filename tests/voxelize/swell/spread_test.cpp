@@ -18,7 +18,7 @@ SpreadNodes outline(double most) {
     SpreadNodes nodes(kEdge);
     for (int j = 0; j < kEdge; ++j)
         for (std::size_t level = 0; level < nodes.gain.size(); ++level)
-            nodes.gain[level][nodeAt(20, j)] = most * static_cast<double>(level + 1) / TileSums::kLevels;
+            nodes.gain[level][nodeAt(20, j)] = most * TileSums::kSwells[level] / kMostSwell;
     return nodes;
 }
 Spread spreadSurplus(const SpreadNodes& nodes, double most_rise) {
@@ -155,8 +155,8 @@ TEST(SwellThatGains, InvertsTheGain) {
     nodes.gain[1][0] = 0.004;
     nodes.gain[2][0] = 0.005;
     EXPECT_EQ(swellThatGains(nodes, 0, 0), 0);
-    EXPECT_NEAR(swellThatGains(nodes, 0, 0.001), kMostSwell / 3, 1e-8);
-    EXPECT_NEAR(swellThatGains(nodes, 0, 0.0025), kMostSwell / 2, 1e-8);
+    EXPECT_NEAR(swellThatGains(nodes, 0, 0.001), TileSums::kSwells[0], 1e-8);
+    EXPECT_NEAR(swellThatGains(nodes, 0, 0.0025), 0.5 * (TileSums::kSwells[0] + TileSums::kSwells[1]), 1e-8);
     EXPECT_NEAR(swellThatGains(nodes, 0, 0.005), kMostSwell, 1e-8);
 }
 
