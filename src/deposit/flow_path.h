@@ -31,8 +31,8 @@ struct PathSpot {
 
 /// Appends the parts and spots of a path, which is not empty. Spots of little volume become part of the path beside
 /// them. Spots are ascending. A closed path ends where it begins. The flow is averaged over at least `least` mm of the
-/// path, half the width of the nozzle, over which the plastic leaves it: without that a stop of no length would have an
-/// infinite section.
+/// path, the width of the nozzle, for so long each place lies under its opening: without that a stop of no length would
+/// have an infinite section.
 void dividePath(std::span<const FlowInterval> path, std::span<const PathSpot> spots, bool closed, double least,
                 FlowRecord& record);
 

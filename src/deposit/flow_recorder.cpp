@@ -130,7 +130,7 @@ void FlowRecorder::layPhase(const Phase& phase, const motion::Segment& segment) 
     const double flow = lag_ > 0 ? (pressed(phase, 0) - record_.laid) / lag_ : phase.a;
     const bool constant = !(lag_ > 0) || (phase.b == 0 && std::abs(flow - phase.a) <= kSteady * phase.a);
     if (!constant)
-        forEachPlace(length, 0.5 * least_, [&](double s) { lay(s, timeAt(s, phase.v0, phase.v1, phase.seconds)); });
+        forEachPlace(length, 0.25 * nozzle_, [&](double s) { lay(s, timeAt(s, phase.v0, phase.v1, phase.seconds)); });
     lay(length, phase.seconds);
     along_ += length;
 }
@@ -210,7 +210,7 @@ void FlowRecorder::piece(const motion::PlannedPiece& piece) {
             const auto end = [&](std::size_t axis) {
                 return segment.start[axis] + segment.direction[axis] * segment.length;
             };
-            strings_->print(segment.start[0], segment.start[1], end(0), end(1), end(2), least_);
+            strings_->print(segment.start[0], segment.start[1], end(0), end(1), end(2), 0.5 * nozzle_);
         }
     }
     ++moves_;
@@ -233,7 +233,7 @@ void FlowRecorder::endPath() {
     if (!path_.empty()) {
         // Slicers end a loop a fraction of the nozzle's width before its begin.
         const bool closed = path_.front().bead != path_.back().bead && std::hypot(path_x_, path_y_) < kClosed;
-        dividePath(path_, spots_, closed, least_, record_);
+        dividePath(path_, spots_, closed, nozzle_, record_);
     } else {
         for (const PathSpot& spot : spots_) record_.purged += spot.volume;
     }

@@ -31,7 +31,7 @@ class FlowRecorder : public motion::PlanSink {
 public:
     /// Seconds, >= 0. `advance` overrides that of the file. `nozzle`: mm, > 0.
     FlowRecorder(double lag, std::optional<double> advance, double nozzle, bool strings = false)
-        : lag_(lag), advance_(advance), least_(0.5 * nozzle) {
+        : lag_(lag), advance_(advance), nozzle_(nozzle) {
         if (strings) strings_.emplace();
     }
 
@@ -64,7 +64,7 @@ private:
 
     const double lag_;
     const std::optional<double> advance_;
-    const double least_;              // mm of the path over which the flow is averaged
+    const double nozzle_;             // mm, its width: the flow is averaged over that much of the path
     double advance_now_ = 0;          // s
     double fed_ = 0;                  // mm^3, E at the begin of a phase
     double along_ = 0;                // mm, on the last bead of path_

@@ -1,6 +1,7 @@
 // Settled beads on real prints: values against brute force, slopes, and volumes.
 #include "base/input_file.h"
 #include "corpus.h"
+#include "deposit/printer.h"
 #include "deposit/read_print.h"
 #include "print_points.h"
 #include "settled_field.h"
@@ -12,7 +13,9 @@
 #include <gtest/gtest.h>
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
 #include <atomic>
+#include <cctype>
 
 namespace stratum::voxelize {
 namespace {
@@ -151,6 +154,39 @@ TEST_P(SettledPrint, SurplusFindsAPlace) {
                 -100 * balance.unplaced() / balance.all.fed);
     EXPECT_NEAR(balance.held(), balance.all.fed, 5e-3 * balance.all.fed);
     EXPECT_GT(balance.pressed_out, 0.8 * balance.all.surplus());
+}
+
+// The same of other slicers' prints, with settled beads alone and as a typical printer lays them.
+class SettledOfSlicers : public testing::TestWithParam<const char*> {};
+
+INSTANTIATE_TEST_SUITE_P(Prints, SettledOfSlicers,
+                         testing::Values("preprocess_cancellation-cura.gcode", "preprocess_cancellation-slic3r.gcode",
+                                         "preprocess_cancellation-superslicer.gcode",
+                                         "libbgcode-mini_cube_a.gcode",
+                                         "preprocess_cancellation-kirimoto.gcode", "slicercompare-bambu_plate_1.gcode",
+                                         "slicer-meta-orca_twocolors.gcode.3mf",
+                                         "filaswitch-mc_testmodel1_S3D.gcode"),
+                         [](const auto& print) {
+                             std::string name = print.param;
+                             std::replace_if(
+                                 name.begin(), name.end(), [](char c) { return std::isalnum(c) == 0; }, '_');
+                             return name;
+                         });
+
+TEST_P(SettledOfSlicers, KeepWhatWasFed) {
+    STRATUM_NEEDS_CORPUS(path, std::string("gcode/") + GetParam());
+    const InputFile file(path);
+    for (const bool typical : {false, true}) {
+        gcode::ReadOptions options;
+        options.deposit.beads = gcode::DepositModel::Beads::settled;
+        if (typical) deposit::usePrinter("typical", options);
+        const gcode::Toolpath toolpath = deposit::readPrint(file.bytes(), GetParam(), options, false).toolpath;
+        const DepositBalance balance =
+            balanceDeposit(toolpath, stackLayers(toolpath, selectBeads(toolpath, {})), 0xffffffff);
+        std::printf("  %s: fed %.2f mm3, %+.2f %%\n", typical ? "typical" : "settled", balance.all.fed,
+                    -100 * balance.unplaced() / balance.all.fed);
+        EXPECT_NEAR(balance.held(), balance.all.fed, 5e-3 * balance.all.fed);
+    }
 }
 
 }  // namespace

@@ -55,7 +55,7 @@ void SpreadNodes::clear(const NodeBox& where) {
 Spreading::Spreading(int edge) : edge_(edge), tent_(edge) {
     const std::size_t count = static_cast<std::size_t>(edge) * static_cast<std::size_t>(edge);
     for (std::vector<float>* values :
-         {&spread_.given, &spread_.raised, &spread_.left, &room_, &around_, &offered_, &taken_})
+         {&spread_.given, &spread_.raised, &spread_.left, &room_, &around_, &offered_, &placed_, &taken_})
         values->assign(count, 0.0F);
 }
 
@@ -89,21 +89,28 @@ void Spreading::send(const std::vector<float>& places, int reach, Sign sign, con
 }
 
 void Spreading::moveOut(const std::vector<float>& most, int reach, bool take_back, const NodeBox& to) {
-    send(room_, reach, Sign::surplus, to, offered_);
-    // What a free end holds more than it was fed, others were given too much: it is taken back.
-    if (take_back) send(spread_.given, reach, Sign::lack, to, taken_);
     float* const given = spread_.given.data();
+    float* const raised = spread_.raised.data();
     float* const left = spread_.left.data();
+    send(room_, reach, Sign::surplus, to, offered_);
+    // What a node holds more than it was fed, others were given too much: it is taken back.
+    if (take_back) {
+        float* const placed = placed_.data();
+        forEach(to.grown(2 * reach).within(box_), [=](std::size_t n) { placed[n] = given[n] + raised[n]; });
+        send(placed_, reach, Sign::lack, to, taken_);
+    }
     float* const room = room_.data();
     const float* const limit = most.data();
     const float* const offered = offered_.data();
     const float* const taken = taken_.data();
     forEach(to, [=](std::size_t n) {
-        const float kept = take_back ? given[n] * (1 + taken[n]) : given[n];
-        const float wanted = kept + room[n] * offered[n];
-        const float gets = std::min(std::max(wanted, 0.0F), limit[n]);
+        const float share = take_back ? 1 + taken[n] : 1;
+        const float kept = std::max(share, 0.0F);
+        const float wanted = given[n] * kept + room[n] * offered[n];
+        const float gets = std::min(wanted, limit[n]);
+        left[n] += wanted - gets + (given[n] + raised[n]) * (share - kept);
         given[n] = gets;
-        left[n] += wanted - gets;
+        raised[n] *= kept;
         room[n] = limit[n] - gets;
     });
 }
@@ -138,8 +145,8 @@ const Spread& Spreading::spread(const SpreadNodes& nodes, const NodeBox& box, co
     });
     if (!any_surplus) return spread_;
     // What a step makes right, the next needs a little farther out than it is right itself.
-    moveOut(nodes.gain.back(), kNear, false, around(2 * kFar).within(box_));
-    if (any_open) raise(nodes.open, static_cast<float>(most_rise), around(kFar).within(box_));
+    moveOut(nodes.gain.back(), kNear, false, around(2 * kFar + kUp).within(box_));
+    if (any_open) raise(nodes.open, static_cast<float>(most_rise), around(2 * kFar).within(box_));
     moveOut(nodes.gain.back(), kFar, true, around(0).within(box_));
     return spread_;
 }

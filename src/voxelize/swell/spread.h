@@ -31,8 +31,8 @@ struct Spread {
 
 /// Nodes on each side of those whose swell is wanted: what is given to one depends on what those within kFar are left
 /// with, and on what those have room for that they may send it to.
-constexpr int kSpreadHalo = 2 * (kNear + kFar);
-static_assert(2 * kUp <= kFar);
+constexpr int kSpreadHalo = 2 * (kNear + kFar) + kUp;
+static_assert(kUp <= 2 * kNear);
 
 /// Spreads layer after layer. Of one thread.
 class Spreading {
@@ -58,7 +58,7 @@ private:
     Tent tent_;
     NodeBox box_;
     Spread spread_;
-    std::vector<float> room_, around_, offered_, taken_;
+    std::vector<float> room_, around_, offered_, placed_, taken_;
 };
 
 /// The swell (mm) that gains `given` at node `n`.
