@@ -27,7 +27,7 @@ struct DepositModel {
     /// Seconds by which the flow out of the nozzle lags behind the extruder; none: every bead has its commanded width.
     std::optional<double> flow_lag;
     std::optional<double> pressure_advance;  ///< s; overrides the file's. Only with flow_lag
-    double nozzle_diameter = 0.4;            ///< mm; flow is averaged over half of it. Only with flow_lag
+    double nozzle_diameter = 0.4;            ///< mm; the flow is averaged over it. Only with flow_lag
     /// How far a bead over nothing hangs down in the middle, as a fraction of the span.
     double sag = 0;
     /// How far the edges of a line on a top surface lie below its middle, as a fraction of the layer's height, 0 ..

@@ -64,7 +64,7 @@ TEST(PressedLayer, HoldsAndGainsWhatTheSectionDoes) {
     for (std::size_t c = 0; c < kColumnSamples; ++c) {
         const double side = std::sqrt(static_cast<double>(sides2.v[c]));
         for (std::size_t n = 0; n < PressedLayer::kFields; ++n) {
-            const double moved = std::max(side - kMostSwell * static_cast<double>(n) / 3, 0.0);
+            const double moved = std::max(side - (n > 0 ? TileSums::kSwells[n - 1] : 0), 0.0);
             const double expected = thickness(moved) - (n > 0 ? thickness(side) : 0);
             EXPECT_NEAR(pressed.fields[n].v[c], expected, std::abs(moved - 0.1) < 5e-4 ? 0.07 : 1e-6) << c << " " << n;
         }
