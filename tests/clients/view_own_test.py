@@ -92,10 +92,10 @@ def drag(lift):
         until("window.dragged === 10", "ten steps of turning")
 
 
-def agrees(name, view, *options, path=None, least=0.995):
-    with viewer.of(path or gcode(name), "--voxel-size", "0.0125", *options):
+def agrees(name, view, *options, path=None, voxel="0.0125", least=0.995):
+    with viewer.of(path or gcode(name), "--voxel-size", voxel, *options):
         drawn_here()
-        show(integrator="normal", bed=False, spp=256, camera=view)
+        show(integrator="normal", bed=False, spp=64, camera=view)
         found = page.execute_async_script(COMPARE)
         check("error" not in found and found["hits"] > 20000, f"{name}: pictures of the print: {found}")
         print(f"{name} {' '.join(options)}: {found['share']:.4f} of {found['hits']} pixels agree, {found['exact']:.4f} exactly")
@@ -233,7 +233,7 @@ try:
     agrees("vase.gcode", {"eye": [150, 60, 40], "look_at": [100, 90, 10], "fov": 3})
     agrees("hull.gcode", {"eye": [150, 60, 40], "look_at": [110, 98, 12], "fov": 2.5})
     if huge := corpus("spot_1000cc_0.1mm_grid.gcode.gz"):
-        agrees("spot, 692 000 beads", {"eye": [400, -100, 200], "look_at": [150, 150, 100], "fov": 1}, path=huge)
+        agrees("spot, 692 000 beads", {"eye": [400, -100, 200], "look_at": [150, 150, 100], "fov": 1}, path=huge, voxel="0.05")
     if thin := corpus("gcode-preview-ripple_vase.gcode"):
         # Where it disagrees, the mean of the reference's normals in a pixel is short, as where several surfaces meet in it.
         agrees("ripple vase", {"eye": [300, -200, 150], "look_at": [62, 24, 20], "fov": 1.5}, path=thin, least=0.99)
