@@ -43,8 +43,11 @@ double PixelSums::variance(std::size_t pixel, int count) const {
 void PixelSums::store(std::size_t pixel, int count, Film& film, int x, int y) const {
     const std::span<const double> own = std::span(sums_).subspan(pixel * each_, each_);
     const auto mean = [&](std::size_t n) { return static_cast<float>(own[n] / count); };
-    // Light that the print reflects onto the bed may exceed what it keeps from it.
-    film.at(x, y) = {Color(mean(kRed), mean(kGreen), mean(kBlue)), std::clamp(mean(kAlpha), 0.0f, 1.0f)};
+    // Light that the print reflects onto the bed may exceed what it keeps from it; and where it keeps nearly all, the
+    // few samples of a pixel may take more from the bed's known light than there is.
+    Color color(mean(kRed), mean(kGreen), mean(kBlue));
+    if (film.content() == FilmContent::radiance) color = glm::max(color, Color(0.0f));
+    film.at(x, y) = {color, std::clamp(mean(kAlpha), 0.0f, 1.0f)};
     storeAovs(aovs_, own.subspan(kOwn), {variance(pixel, count), static_cast<std::uint32_t>(count)}, film.layers(),
               film.index(x, y));
 }

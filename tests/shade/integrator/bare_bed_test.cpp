@@ -131,6 +131,24 @@ std::array<double, 2> onTheBed(const trace::Intersector& print, const shade::Sce
     return {mean, std::sqrt(std::max(squares / kSamples - mean * mean, 0.0))};
 }
 
+// In the contact shadow of a black ball nearly nothing is left of the bed's known light.
+TEST(BareBed, NoPixelIsBelowZero) {
+    const auto ball = test::sphere({0, 0, 1.001}, 1.0);
+    auto scene = transparentScene(ball, "lambert:0,0,0", "studio");
+    scene.transparent = false;
+    scene.catcher.reset();
+    shade::RenderOptions options;
+    options.width = 48;
+    options.height = 36;
+    options.spp = 2;
+    std::size_t dark = 0;
+    for (const shade::Pixel& pixel : shade::render(ball, scene, options).film.pixels()) {
+        EXPECT_GE(std::min({pixel.rgb.r, pixel.rgb.g, pixel.rgb.b}), 0.0f);
+        dark += shade::luminance(pixel.rgb) == 0.0f;
+    }
+    EXPECT_GT(dark, 20U);
+}
+
 TEST(BareBed, ABlackBallTakesItsFormFactorAndABareBedHasNoNoise) {
     constexpr double kRadius = 1.0, kHeight = 2.5;
     const auto ball = test::sphere({0, 0, kHeight}, kRadius);
