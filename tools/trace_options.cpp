@@ -74,7 +74,7 @@ void addInputOptions(CLI::App& app, TraceCommand& o) {
 void addPictureOptions(CLI::App& app, TraceCommand& o) {
     const char* picture = "Picture";
     app.add_option("--size", o.size, "Pixels (default 1280x960)")->type_name("WxH")->group(picture);
-    app.add_option("--spp", o.render.spp, "Samples a pixel (default 16; if denoised 8, small pictures up to 32)")
+    app.add_option("--spp", o.render.spp, "Samples a pixel (default 16; if denoised 8, small pictures more)")
         ->each([&o](const std::string&) { o.spp_given = true; })
         ->type_name("N")
         ->group(picture);

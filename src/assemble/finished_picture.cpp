@@ -5,7 +5,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <cstdint>
+#include <algorithm>
+#include <cmath>
 
 namespace stratum::assemble {
 
@@ -15,12 +16,10 @@ bool chooseDenoising(const Denoising& denoising, shade::RenderOptions& render) {
     if (!denoise) return false;
     if (!denoising.spp_given && !(render.noise > 0.0 || render.seconds > 0.0)) {
         // 8 are enough where a layer line is some pixels high. In a small picture several lines share a pixel, which
-        // needs more samples; the total stays near that of the default size.
-        constexpr int kLeast = 8, kMost = 32;
-        constexpr std::int64_t kTotal = std::int64_t{1280} * 960 * kLeast * 11 / 10;
-        const std::int64_t pixels = std::int64_t{render.width} * render.height;
-        render.spp = kLeast;
-        while (render.spp < kMost && pixels * render.spp * 2 <= kTotal) render.spp *= 2;
+        // needs more samples for the same error: see docs/shading.md, "Denoising".
+        constexpr double kLeast = 8, kMost = 32, kLarge = 1280 * 960;
+        const double pixels = static_cast<double>(render.width) * static_cast<double>(render.height);
+        render.spp = static_cast<int>(std::lround(std::clamp(kLeast + 2 * std::log2(kLarge / pixels), kLeast, kMost)));
     }
     shade::addDenoisingGuides(render);
     return true;
