@@ -142,6 +142,7 @@ Tag parseTag(std::string_view comment) {
             break;
         case 'H':
             if (take(text, "HEIGHT:")) return ofHeight(text);
+            if (take(text, "HEIGHT-BELT:")) return ofHeight(text);  // ideaMaker: across the layers; HEIGHT is Z's
             break;
         case 'L':
             if (take(text, "LAYER_CHANGE")) return layerChange("LAYER_CHANGE");
