@@ -73,6 +73,7 @@ bool takeFilament(const Footer& footer, const Machine& machine, Toolpath& toolpa
     toolpath.extruded_mm3 = machine.extrudedMm3();
     toolpath.extrusion_rule = machine.extrusionRule();
     toolpath.prime_mm = primeOf(toolpath, machine);
+    toolpath.flushed_mm = machine.flushedMm();
     const std::optional<double> found = diameterFromVolume(footer, machine);
     if (found) {
         setDiameter(*found, "the volume that the file states", toolpath);

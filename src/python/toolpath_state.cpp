@@ -204,7 +204,7 @@ void visitToolpath(Archive& archive, Path& toolpath) {
     auto& [beads, arcs, runs, objects, warnings, slicer, firmware, format, filament_diameter, layer_height, deposit,
            layer_count, belt_angle, tool_colors, palette_tools, color_changes, temperatures, fans, timing, flow,
            filament_by_tool, footer_by_tool, footer_mm, stated, extrusion_rule, firmware_reason, cut_short, filament_mm,
-           prime_mm, extruded_mm3] = toolpath;
+           prime_mm, flushed_mm, extruded_mm3] = toolpath;
     archive.records(beads);
     archive.each(arcs, [&archive](auto& item) {
         auto& [center_x, center_y, sweep, line] = item;
@@ -256,6 +256,7 @@ void visitToolpath(Archive& archive, Path& toolpath) {
     archive.value(cut_short);
     archive.value(filament_mm);
     archive.value(prime_mm);
+    archive.value(flushed_mm);
     archive.value(extruded_mm3);
 }
 static_assert(sizeof(gcode::Bead) == 60 && sizeof(gcode::Run) == 16 && sizeof(gcode::BeadTiming) == 24 &&

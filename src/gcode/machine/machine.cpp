@@ -96,6 +96,8 @@ void Machine::run(const Line& line) {
         const Tag tag = parseTag(line.comment);
         if (tag.kind == Tag::Kind::object_start) objects_by_comment_ = true;
         if (tag.kind == Tag::Kind::filament_loaded) loaded();
+        if (tag.kind == Tag::Kind::flush_start) flushing_ = true;
+        if (tag.kind == Tag::Kind::flush_stop) flushing_ = false;
         if (tag.kind == Tag::Kind::units_set && line.count > 0 && line.commands[0].code == 21) recorder_.startPart();
         if (tag.kind != Tag::Kind::none) recorder_.tag(tag, line_);
         if (moves_ != nullptr) tellElapsed(line.comment);

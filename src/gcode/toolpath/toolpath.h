@@ -150,7 +150,8 @@ struct Toolpath {
     std::string cut_short;        ///< why the program seems truncated; empty if it doesn't
     double filament_mm = 0;       ///< positive E of the beads as the file counts it, in mm of filament
     double prime_mm = 0;          ///< the part of it that is laid before the first layer: prime lines (layer 0)
-    double extruded_mm3 = 0;      ///< the same as volume, times the flow factor (M221): the expected sum of all beads
+    double flushed_mm = 0;    ///< pushed out in place while filaments change, in no bead; BambuStudio's sums have it
+    double extruded_mm3 = 0;  ///< the same as volume, times the flow factor (M221): the expected sum of all beads
 
     const Run& runOf(const Bead& bead) const { return runs[bead.run]; }
     /// 1-based line in the source; saturates at 2147483647.
