@@ -89,6 +89,7 @@ private:
     void selectTool(const Command& command);
     void useNumberedTool(double number);
     void useTool(std::size_t tool);
+    void heed(const Tag& tag, const Line& line);
     /// All filament that was drawn back is at the nozzle again.
     void loaded();
     void setOffsets(const Command& command);
