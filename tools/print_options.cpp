@@ -165,7 +165,7 @@ void addReadingOptions(CLI::App& app, voxelize::PrintOptions& options) {
         ->type_name("MM")
         ->group(reading);
     app.add_option("--belt", options.read.belt_angle,
-                   "Of a belt printer: the angle between gantry and belt, e.g. 45; layers are level then")
+                   "Of a belt printer: the angle between gantry and belt, e.g. 45, if the file does not state it")
         ->check(CLI::Range(gcode::kFlattestBelt, gcode::kSteepestBelt))
         ->type_name("DEGREES")
         ->group(reading);

@@ -29,10 +29,12 @@ double scaleFor(const TracedObjects& objects, HotEndShape shape) {
     return std::clamp(std::max({size.x, size.y, size.z}) / kPartOfThat, kSmallest, 1.0);
 }
 
-std::vector<trace::SceneObject> placedAt(const glm::dvec3& tip, const std::vector<HotEndPart>& parts, double scale) {
+std::vector<trace::SceneObject> placedAt(const glm::dvec3& tip, const std::vector<HotEndPart>& parts, double scale,
+                                         double tilt) {
     std::vector<trace::SceneObject> placed;
     placed.reserve(parts.size());
-    for (const HotEndPart& part : parts) placed.push_back({part.solid, {glm::dmat3(scale), tip}});
+    for (const HotEndPart& part : parts)
+        placed.push_back({part.solid, trace::Placement::of(glm::dvec3(scale), {tilt, 0.0, 0.0}, tip)});
     return placed;
 }
 
@@ -86,18 +88,19 @@ HotEnd::HotEnd(const TracedObjects& objects, shade::SceneDescription& scene, con
     if (objects.prints.empty())
         throw UsageError("--nozzle needs G-code: a level set doesn't know where its last bead ends");
     layers_ = objects.prints.front();
+    tilt_ = layers_->finest().layout().toolpath->belt_angle;
     if (kind_ != HotEndKind::metal) return;
     if (scene.objects.empty()) scene.objects.emplace_back(scene.material);
     for (const HotEndPart& part : parts_) scene.objects.emplace_back(shade::makeBrdf(part.metal));
 }
 
 std::shared_ptr<const trace::Intersector> HotEnd::at(std::size_t moment) const {
-    return kind_ == HotEndKind::metal ? withHotEnd(print_, layers_->tipAt(moment), parts_, scale_) : print_;
+    return kind_ == HotEndKind::metal ? withHotEnd(print_, layers_->tipAt(moment), parts_, scale_, tilt_) : print_;
 }
 
 void HotEnd::drawOver(std::size_t moment, const shade::Camera& camera, double white, shade::Film& film) const {
     if (kind_ != HotEndKind::clear) return;
-    const auto solids = trace::makeSceneIntersector(placedAt(layers_->tipAt(moment), parts_, scale_));
+    const auto solids = trace::makeSceneIntersector(placedAt(layers_->tipAt(moment), parts_, scale_, tilt_));
     const shade::PixelBox pixels = pixelsOf(solids->bounds(), camera, film.region());
     if (pixels.width() <= 0 || pixels.height() <= 0) return;
     const Glass glass(camera, white, parts_);
@@ -128,8 +131,8 @@ void HotEnd::drawOver(std::size_t moment, const shade::Camera& camera, double wh
 
 std::shared_ptr<const trace::Intersector> withHotEnd(const std::shared_ptr<const trace::Intersector>& print,
                                                      const glm::dvec3& tip, const std::vector<HotEndPart>& parts,
-                                                     double scale) {
-    std::vector<trace::SceneObject> objects = placedAt(tip, parts, scale);
+                                                     double scale, double tilt) {
+    std::vector<trace::SceneObject> objects = placedAt(tip, parts, scale, tilt);
     objects.insert(objects.begin(), {print, {}});
     return trace::makeSceneIntersector(std::move(objects));
 }

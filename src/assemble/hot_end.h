@@ -55,14 +55,16 @@ private:
     HotEndKind kind_;
     std::vector<HotEndPart> parts_;
     double scale_ = 1.0;
+    double tilt_ = 0.0;
 };
 
 /// The print with a hot end, `scale` times the size of its parts.
-/// @param print  object 0, as it is alone; its world space is print space
+/// @param print  object 0, as it is alone; its world space is in mm
 /// @param tip    the middle of the nozzle's tip, mm
 /// @param parts  objects 1 and on
+/// @param tilt   degrees about x that it leans by: gcode::Toolpath::belt_angle
 std::shared_ptr<const trace::Intersector> withHotEnd(const std::shared_ptr<const trace::Intersector>& print,
                                                      const glm::dvec3& tip, const std::vector<HotEndPart>& parts,
-                                                     double scale = 1.0);
+                                                     double scale = 1.0, double tilt = 0.0);
 
 }  // namespace stratum::assemble

@@ -251,7 +251,7 @@ double shownDeviation(const Comparison& comparison) {
     return 10 * ten;
 }
 
-openvdb::FloatGrid::Ptr deviationGrid(const openvdb::FloatGrid& surface, const openvdb::math::Transform& to_print,
+openvdb::FloatGrid::Ptr deviationGrid(const openvdb::FloatGrid& surface, const openvdb::math::Transform& to_mm,
                                       const ClosedModel& model, const Comparison& comparison) {
     using Leaf = openvdb::FloatTree::LeafNodeType;
     auto grid =
@@ -264,8 +264,15 @@ openvdb::FloatGrid::Ptr deviationGrid(const openvdb::FloatGrid& surface, const o
     grid->tree().getNodes(leaves);
     const Rigid to_model = comparison.model_to_print.inverse();
     const double voxel = surface.voxelSize()[0];
-    // The slope has no unit; a turned world (--up y) has the axes of the index space all the same.
-    const double mm = to_print.voxelSize()[0] / voxel;
+    // The slope has no unit. It is along the axes of the index space, which those of a print on a belt lean to.
+    glm::dmat3 turn;
+    for (int axis = 0; axis < 3; ++axis) {
+        openvdb::Vec3d edge(0.0);
+        edge[axis] = 1;
+        edge = to_mm.baseMap()->applyJacobian(edge) / to_mm.voxelSize()[axis];
+        turn[axis] = {edge[0], edge[1], edge[2]};
+    }
+    const double mm = to_mm.voxelSize()[0] / voxel;
     parallelFor(leaves.size(), 16, [&](std::size_t first, std::size_t last) {
         auto phi = surface.getConstAccessor();
         std::uint32_t hint = Nearest::kNone;
@@ -273,11 +280,11 @@ openvdb::FloatGrid::Ptr deviationGrid(const openvdb::FloatGrid& surface, const o
             for (auto value = leaves[n]->beginValueOn(); value; ++value) {
                 const openvdb::Coord at = value.getCoord();
                 const glm::dvec3 slope = slopeTowardsSurface(phi, at, voxel);
-                const openvdb::Vec3d world = to_print.indexToWorld(at);
+                const openvdb::Vec3d world = to_mm.indexToWorld(at);
                 glm::dvec3 place(world[0], world[1], world[2]);
                 // One step of Newton's to the surface; between beads the slope vanishes, and the voxel stays.
                 const double steep = glm::dot(slope, slope);
-                if (steep > 0.25) place -= slope * (mm * static_cast<double>(phi.getValue(at)) / steep);
+                if (steep > 0.25) place -= turn * slope * (mm * static_cast<double>(phi.getValue(at)) / steep);
                 const ModelDistance found = model.distance(to_model(place), hint);
                 hint = found.triangle;
                 value.setValue(static_cast<float>(found.distance));

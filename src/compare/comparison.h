@@ -87,7 +87,7 @@ Comparison measureDeviations(const PrintedSurface& print, const ClosedModel& mod
 
 /// Both ways. Printed parts are not airtight, and what lies below their skin is no deviation from the model: places of
 /// the printed surface from which the print hides the nearest place of the model are left out.
-/// `print`: the outer surface (Interior::cull) in print space, mm. Distances are exact for the polygons of
+/// `print`: the outer surface (Interior::cull) in mm, as it lies in the world. Distances are exact for the polygons of
 /// both surfaces; the print's are within a tenth of a voxel of its level set. If it does not fit, other units and sizes
 /// of the model and its mirror image are tried: see doubtsOf(). Parallel; the result does not depend on the number of
 /// threads. Throws UsageError if the print has no surface.
@@ -98,9 +98,9 @@ Comparison compareToModel(const openvdb::FloatGrid& print, const ClosedModel& mo
 double shownDeviation(const Comparison& comparison);
 
 /// A grid `deviation` over the active voxels of `surface`, in mm: how far the place of the surface that is nearest to a
-/// voxel is from the model. Its metadata "range" is shownDeviation(). `to_print`: from
-/// the surface's index space to print space, mm.
-openvdb::FloatGrid::Ptr deviationGrid(const openvdb::FloatGrid& surface, const openvdb::math::Transform& to_print,
+/// voxel is from the model. Its metadata "range" is shownDeviation(). `to_mm`: from
+/// the surface's index space to that of compareToModel()'s print.
+openvdb::FloatGrid::Ptr deviationGrid(const openvdb::FloatGrid& surface, const openvdb::math::Transform& to_mm,
                                       const ClosedModel& model, const Comparison& comparison);
 
 }  // namespace stratum::compare

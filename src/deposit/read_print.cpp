@@ -32,8 +32,13 @@ void refuseStrings(std::string_view name, const gcode::ReadOptions& options) {
             fmt::format("{}: strings are of what oozes, and without a lag of the flow nothing does; give "
                         "a lag above 0 s (--flow-lag 0.05), too",
                         name));
-    if (options.belt_angle)
-        throw UsageError(fmt::format("{}: strings are not told of printers with a belt: leave out either", name));
+}
+
+// What is told of level layers on a bed alone.
+void refuseOnBelt(std::string_view name, const gcode::DepositModel& deposit, bool travels) {
+    const char* what = travels ? "travels are" : deposit.strings ? "strings are" : deposit.sag > 0 ? "sag is" : nullptr;
+    if (what != nullptr)
+        throw UsageError(fmt::format("{}: {} not told of prints on a belt; leave that out", name, what));
 }
 
 }  // namespace
@@ -43,11 +48,8 @@ PrintRead readPrint(std::string_view bytes, std::string_view name, const gcode::
     PrintRead print;
     std::optional<FlowRecorder> flow;
     const gcode::DepositModel& deposit = options.deposit;
-    if (travels != nullptr && (options.belt_angle || deposit.flow_lag || deposit.sag > 0))
-        throw UsageError(
-            fmt::format("{}: travels are not told of printers with a belt, and not beside beads that lag "
-                        "or sag: leave out either",
-                        name));
+    if (travels != nullptr && (deposit.flow_lag || deposit.sag > 0))
+        throw UsageError(fmt::format("{}: travels are not told beside beads that lag or sag: leave out either", name));
     if (deposit.strings) refuseStrings(name, options);
     if (deposit.flow_lag)
         flow.emplace(*deposit.flow_lag, deposit.pressure_advance, deposit.nozzle_diameter, deposit.strings);
@@ -70,6 +72,7 @@ PrintRead readPrint(std::string_view bytes, std::string_view name, const gcode::
     } else {
         print.toolpath = gcode::readToolpath(bytes, name, options);
     }
+    if (print.toolpath.belt_angle != 0) refuseOnBelt(name, deposit, travels != nullptr);
     warnOfUnused(deposit, print.toolpath.warnings);
     if (!flow) {
         if (deposit.sag > 0) print.sag = sagBeads(print.toolpath, deposit.sag);

@@ -73,6 +73,7 @@ bool takeFilament(const Footer& footer, const Machine& machine, Toolpath& toolpa
     toolpath.extruded_mm3 = machine.extrudedMm3();
     toolpath.extrusion_rule = machine.extrusionRule();
     toolpath.prime_mm = primeOf(toolpath, machine);
+    toolpath.flushed_mm = machine.flushedMm();
     const std::optional<double> found = diameterFromVolume(footer, machine);
     if (found) {
         setDiameter(*found, "the volume that the file states", toolpath);
@@ -83,6 +84,8 @@ bool takeFilament(const Footer& footer, const Machine& machine, Toolpath& toolpa
     }
     // A single number is the whole print's.
     std::vector<double> lengths = footer.length;
+    for (std::size_t tool = 0; tool < std::min(lengths.size(), footer.flow.size()); ++tool)
+        if (footer.flow[tool] > 0) lengths[tool] /= footer.flow[tool];
     for (std::size_t tool = 0; tool < footer.volume.size(); ++tool)
         lengths.push_back(footer.volume[tool] / areaOf(found.value_or(machine.filamentDiameter(tool))));
     toolpath.footer_mm = std::accumulate(lengths.begin(), lengths.end(), 0.0);

@@ -28,6 +28,8 @@ namespace {
 constexpr std::size_t kProgressBytes = std::size_t{1} << 20;
 constexpr std::size_t kBytesPerBead = 26;  // the densest real files have 30; memory never touched costs nothing
 
+bool isBeltAngle(double degrees) { return degrees >= kFlattestBelt && degrees <= kSteepestBelt; }
+
 void checkOptions(const ReadOptions& options) {
     for (const double diameter : options.filament_diameters)
         if (!(diameter >= 0.1 && diameter <= 100))
@@ -38,7 +40,7 @@ void checkOptions(const ReadOptions& options) {
                                      firmwareName(options.printer->firmware), firmwareName(options.firmware)));
     if (options.layer_height && !(*options.layer_height >= 0.001 && *options.layer_height <= 100))
         throw UsageError(fmt::format("layer height {} mm: expected 0.001 to 100, e.g. 0.2", *options.layer_height));
-    if (options.belt_angle && !(*options.belt_angle >= kFlattestBelt && *options.belt_angle <= kSteepestBelt))
+    if (options.belt_angle && !isBeltAngle(*options.belt_angle))
         throw UsageError(
             fmt::format("belt angle {} degrees: expected {} to {}, the angle between gantry and belt, e.g. "
                         "45",
@@ -118,14 +120,23 @@ void nameObjects(const Program& program, Toolpath& toolpath) {
     }
 }
 
-void warnOfBelt(const ReadOptions& options, std::string_view printer, WarningLog& warnings) {
-    if (options.belt_angle) return;
+// As given, else as the file states it.
+std::optional<double> beltAngle(const ReadOptions& options, const StatedFacts& stated, WarningLog& warnings) {
+    if (options.belt_angle) return options.belt_angle;
+    if (stated.belt && stated.belt_angle && isBeltAngle(*stated.belt_angle)) return stated.belt_angle;
+    const auto warn = [&warnings](std::string_view name) {
+        warnings.add(fmt::format("{} prints on a belt, which Z moves: without the angle of its gantry (--belt 45) the "
+                                 "print is skewed",
+                                 name),
+                     1);
+    };
     for (const std::string_view name : {"CR-30", "CR30", "BLACKBELT", "BlackBelt", "Blackbelt"})
-        if (printer.find(name) != std::string_view::npos)
-            return warnings.add(fmt::format("{} prints on a belt, which Z moves: without the angle of its gantry "
-                                            "(--belt 45) the print is skewed",
-                                            name),
-                                1);
+        if (stated.printer.find(name) != std::string_view::npos) {
+            warn(name);
+            return {};
+        }
+    if (stated.belt) warn("the printer");
+    return {};
 }
 
 }  // namespace
@@ -147,9 +158,10 @@ Toolpath readToolpath(std::string_view bytes, std::string_view name, const ReadO
     WarningLog warnings;
     if (!settings.damaged_part.empty())
         warnings.add(fmt::format("{} is damaged; its settings are left out", settings.damaged_part), 1);
-    warnOfBelt(options, settings.stated.printer, warnings);
+    ReadOptions read = options;
+    read.belt_angle = beltAngle(options, settings.stated, warnings);
     BeadRecorder recorder(nominal.value_or(0.2), text.size() / kBytesPerBead, warnings);
-    Machine machine(settings, options, name, recorder, warnings);
+    Machine machine(settings, read, name, recorder, warnings);
     std::optional<MotionRecorder> motion;
     if (options.motion != nullptr) {
         motion.emplace(
@@ -182,6 +194,7 @@ Toolpath readToolpath(std::string_view bytes, std::string_view name, const ReadO
 
     Toolpath toolpath = std::move(recorded);
     toolpath.deposit = options.deposit;
+    toolpath.belt_angle = read.belt_angle.value_or(0);
     toolpath.slicer = settings.slicer;
     toolpath.firmware = firmwareName(machine.firmware());
     toolpath.layer_height = nominal.value_or(0);

@@ -32,13 +32,16 @@ double at(const std::vector<double>& list, std::size_t tool) { return tool < lis
 void describeFilament(const Toolpath& toolpath, fmt::memory_buffer& out) {
     const std::size_t tools = std::max(toolpath.filament_by_tool.size(), toolpath.footer_by_tool.size());
     // Some slicers count the prime lines of the start program, others don't: the nearer sum is compared.
-    const double part = toolpath.filament_mm - toolpath.prime_mm;
+    const double all = toolpath.filament_mm + toolpath.flushed_mm;
+    const double part = all - toolpath.prime_mm;
     const double footer = toolpath.footer_mm;
     const bool primes = toolpath.prime_mm > 0;
-    const bool part_alone =
-        primes && (!(footer > 0) || std::abs(part - footer) <= std::abs(toolpath.filament_mm - footer));
+    const bool part_alone = primes && (!(footer > 0) || std::abs(part - footer) <= std::abs(all - footer));
     fmt::format_to(std::back_inserter(out), "E is {}\n{}: ", toolpath.extrusion_rule, part_alone ? "part" : "all");
-    compare(part_alone ? part : toolpath.filament_mm, footer, out);
+    compare(part_alone ? part : all, footer, out);
+    if (toolpath.flushed_mm > 0)
+        fmt::format_to(std::back_inserter(out), "flushed while filaments change: {:.2f} mm, which are in that sum\n",
+                       toolpath.flushed_mm);
     if (primes)
         fmt::format_to(std::back_inserter(out), "prime lines before layer 1: {:.2f} mm{}\n", toolpath.prime_mm,
                        part_alone ? "" : ", which are in that sum");

@@ -59,7 +59,7 @@ std::map<std::uint32_t, std::vector<NumberRange>> elementsBy(const Kind& kind, c
     return sets;
 }
 
-void addSides(const Hexahedra& mesh, std::vector<NamedSet>& sets) {
+void addSides(const Hexahedra& mesh, bool leans, std::vector<NamedSet>& sets) {
     Node low = mesh.nodes.front();
     Node high = low;
     for (const Node& node : mesh.nodes) {
@@ -72,10 +72,13 @@ void addSides(const Hexahedra& mesh, std::vector<NamedSet>& sets) {
             if (mesh.nodes[n].*axis == place) add(set.members, n);
         sets.push_back(std::move(set));
     };
-    side("BED", &Node::k, low.k);
-    side("TOP", &Node::k, high.k);
+    if (!leans) {
+        side("BED", &Node::k, low.k);
+        side("TOP", &Node::k, high.k);
+    }
     side("XMIN", &Node::i, low.i);
     side("XMAX", &Node::i, high.i);
+    if (leans) return;
     side("YMIN", &Node::j, low.j);
     side("YMAX", &Node::j, high.j);
 }
@@ -93,7 +96,7 @@ std::vector<NamedSet> elementSets(const SolidElements& elements, const gcode::To
 std::vector<NamedSet> nodeSets(const SolidElements& elements, const Hexahedra& mesh, const gcode::Toolpath& toolpath) {
     std::vector<NamedSet> sets;
     if (mesh.nodes.empty()) return sets;
-    addSides(mesh, sets);
+    addSides(mesh, toolpath.belt_angle != 0, sets);
     for (const Kind& kind : kinds()) {
         constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
         std::vector<std::uint32_t> seen_by(mesh.nodes.size(), kNone);  // the last set that took a node

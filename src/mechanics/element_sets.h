@@ -27,7 +27,7 @@ struct NamedSet {
 std::vector<NamedSet> elementSets(const SolidElements& elements, const gcode::Toolpath& toolpath);
 
 /// The nodes of those elements, under the same names; and BED and TOP, XMIN, XMAX, YMIN and YMAX: the nodes of the
-/// outermost plane of each side.
+/// outermost plane of each side. A print on a belt, whose cubes lean, has XMIN and XMAX alone.
 std::vector<NamedSet> nodeSets(const SolidElements& elements, const Hexahedra& mesh, const gcode::Toolpath& toolpath);
 
 /// ALONG_azimuth, and ALONG_azimuth_UP_elevation of sloped beads: every element is in one.

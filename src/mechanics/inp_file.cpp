@@ -59,6 +59,9 @@ private:
     std::ofstream& out_;
 };
 
+// A micrometre's thousandth is below what the solvers' single precision of coordinates shows.
+double rounded(double mm) { return std::round(mm * 1e6) * 1e-6 + 0.0; }
+
 // The few coordinates that there are along an axis, as text.
 class Axis {
 public:
@@ -67,9 +70,7 @@ public:
             nodes.begin(), nodes.end(), [index](const Node& a, const Node& b) { return a.*index < b.*index; });
         low_ = (*low).*index;
         for (std::int32_t n = low_; n <= (*high).*index; ++n) {
-            // A micrometre's thousandth is below what the solvers' single precision of coordinates shows.
-            const double at = std::round((origin + n * edge) * 1e6) * 1e-6;
-            text_.push_back(fmt::format("{:.9g}", at == 0 ? 0.0 : at));
+            text_.push_back(fmt::format("{:.9g}", rounded(origin + n * edge)));
         }
     }
     std::string_view operator()(const Node& node) const { return text_[static_cast<std::size_t>(node.*index_ - low_)]; }
@@ -80,14 +81,29 @@ private:
     std::vector<std::string> text_;
 };
 
+// Those of a print on a belt, whose cubes lean as its layers do.
+void writeTurnedNodes(const SolidElements& elements, const Hexahedra& mesh, const voxelize::Placement& placement,
+                      Lines& out) {
+    out.each(mesh.nodes.size(), [&](std::size_t n, fmt::memory_buffer& buffer) {
+        const Node& node = mesh.nodes[n];
+        const auto [x, y, z] =
+            voxelize::worldOf({elements.origin[0] + node.i * elements.edge, elements.origin[1] + node.j * elements.edge,
+                               elements.origin[2] + node.k * elements.edge},
+                              placement);
+        fmt::format_to(std::back_inserter(buffer), FMT_COMPILE("{}, {:.9g}, {:.9g}, {:.9g}\n"), n + 1, rounded(x),
+                       rounded(y), rounded(z));
+    });
+}
+
 void writeNodes(const SolidElements& elements, const Hexahedra& mesh, const InpOptions& options, Lines& out) {
     const auto axis = [&](std::int32_t Node::*index, int n) {
-        return Axis(mesh.nodes, index, elements.origin[n] + options.offset[n], elements.edge);
+        return Axis(mesh.nodes, index, elements.origin[n] + options.placement.offset[n], elements.edge);
     };
+    out.text("*NODE, NSET=NODES\n");
+    if (options.placement.tilt != 0) return writeTurnedNodes(elements, mesh, options.placement, out);
     const Axis x = axis(&Node::i, 0);
     const Axis y = axis(&Node::j, 1);
     const Axis z = axis(&Node::k, 2);
-    out.text("*NODE, NSET=NODES\n");
     out.each(mesh.nodes.size(), [&](std::size_t n, fmt::memory_buffer& buffer) {
         const Node& node = mesh.nodes[n];
         fmt::format_to(std::back_inserter(buffer), FMT_COMPILE("{}, {}, {}, {}\n"), n + 1, x(node), y(node), z(node));
@@ -103,18 +119,24 @@ void writeElements(const Hexahedra& mesh, Lines& out) {
     });
 }
 
-// The local axes of a direction: along it, and across it in the plan.
-std::string orientation(const BeadDirection& direction, const std::string& name) {
+// The local axes of a direction: along it, and across it in the plan of the layers.
+std::string orientation(const BeadDirection& direction, const std::string& name, double tilt) {
     constexpr double kRadians = std::numbers::pi / 180;
     const double azimuth = direction.azimuth * kRadians;
     const double elevation = direction.elevation * kRadians;
-    return fmt::format("*ORIENTATION, NAME={}, SYSTEM=RECTANGULAR\n{:.7f}, {:.7f}, {:.7f}, {:.7f}, {:.7f}, 0.\n", name,
-                       std::cos(azimuth) * std::cos(elevation), std::sin(azimuth) * std::cos(elevation),
-                       std::sin(elevation), -std::sin(azimuth), std::cos(azimuth));
+    voxelize::Placement turned;
+    turned.tilt = tilt;
+    const auto along = voxelize::worldOf(
+        {std::cos(azimuth) * std::cos(elevation), std::sin(azimuth) * std::cos(elevation), std::sin(elevation)},
+        turned);
+    const auto across = voxelize::worldOf({-std::sin(azimuth), std::cos(azimuth), 0}, turned);
+    return fmt::format("*ORIENTATION, NAME={}, SYSTEM=RECTANGULAR\n{:.7f}, {:.7f}, {:.7f}, {:.7f}, {:.7f}, {}\n", name,
+                       along[0], along[1], along[2], across[0], across[1],
+                       across[2] == 0 ? std::string("0.") : fmt::format("{:.7f}", across[2]));
 }
 
 std::size_t writeMaterial(const SolidElements& elements, const gcode::Toolpath& toolpath, const Elastic& elastic,
-                          Lines& out) {
+                          double tilt, Lines& out) {
     const auto& [e1, e2, e3] = elastic.young;
     const auto& [nu12, nu13, nu23] = elastic.poisson;
     const auto& [g12, g13, g23] = elastic.shear;
@@ -128,7 +150,7 @@ std::size_t writeMaterial(const SolidElements& elements, const gcode::Toolpath& 
     const auto sets = directionSets(elements, toolpath);
     for (const auto& [direction, set] : sets) {
         out.set("ELSET", set);
-        out.text(orientation(direction, set.name));
+        out.text(orientation(direction, set.name, tilt));
         out.text(fmt::format("*SOLID SECTION, ELSET={0}, MATERIAL=PLASTIC, ORIENTATION={0}\n", set.name));
     }
     return sets.size();
@@ -156,7 +178,8 @@ InpReport writeInp(const SolidElements& elements, const Hexahedra& mesh, const g
     for (const NamedSet& set : of_nodes) out.set("NSET", set);
     report.element_sets = of_elements.size();
     report.node_sets = of_nodes.size();
-    if (options.elastic) report.directions = writeMaterial(elements, toolpath, *options.elastic, out);
+    if (options.elastic)
+        report.directions = writeMaterial(elements, toolpath, *options.elastic, options.placement.tilt, out);
     stream.close();
     if (!stream) throw writeError(path.string());
     file.commit();

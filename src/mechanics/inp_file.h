@@ -8,6 +8,7 @@
 #include "mechanics/elastic.h"
 #include "mechanics/hexahedra.h"
 #include "mechanics/solid_elements.h"
+#include "voxelize/beads/placement.h"
 
 #include <cstddef>
 #include <filesystem>
@@ -18,7 +19,7 @@ namespace stratum::mechanics {
 
 struct InpOptions {
     std::optional<Elastic> elastic;  ///< without: no material and no section; the deck that includes the file has them
-    double offset[3] = {0, 0, 0};    ///< mm, added to print space
+    voxelize::Placement placement;   ///< of mm, z up
     std::string source;              ///< the G-code file, for the heading
 };
 

@@ -49,7 +49,7 @@ PrintFieldObject makeField(const ToolpathObject& print, const py::kwargs& given)
     return callLong(py::none(), [&](const Report&) {
         const exporter::LevelSetPlan plan(*print.toolpath, std::move(choices));
         return PrintFieldObject{std::make_shared<const ondemand::PrintField>(
-            print.toolpath, plan.selection(), plan.lattice(), voxelize::Placement(),
+            print.toolpath, plan.selection(), plan.lattice(), plan.placement(),
             print.source.empty() ? "print" : print.source)};
     });
 }
@@ -57,9 +57,13 @@ PrintFieldObject makeField(const ToolpathObject& print, const py::kwargs& given)
 py::array_t<double> distanceOf(const PrintFieldObject& self, const py::object& array, const py::object& progress) {
     const std::vector<glm::dvec3> points = pointsOf(array, "points");
     const ondemand::PointDistance distance(self.field->layout());
+    const voxelize::Placement lies = voxelize::placementOf(*self.field->layout().toolpath);
     std::vector<double> values(points.size());
     forPoints(points.size(), progress, [&](std::size_t first, std::size_t last) {
-        for (std::size_t n = first; n < last; ++n) values[n] = distance.at(points[n]);
+        for (std::size_t n = first; n < last; ++n) {
+            const auto [x, y, z] = voxelize::printOf({points[n].x, points[n].y, points[n].z}, lies);
+            values[n] = distance.at({x, y, z});
+        }
     });
     const auto count = static_cast<py::ssize_t>(values.size());
     return arrayOf(std::move(values), {count});
@@ -277,7 +281,7 @@ void bindPrintField(py::module_& module) {
         .def("distance", &distanceOf,
              documented("distance(self, points, *, progress=None)",
                         "float64 (N,): exact signed distance to the beads, mm, at points "
-                        "(N, 3) of print space; negative but a bound inside; farther away than reach it is reach.")
+                        "(N, 3) of the world, mm; negative but a bound inside; farther away than reach it is reach.")
                  .c_str(),
              "points"_a, py::kw_only(), "progress"_a = py::none())
         .def(

@@ -108,6 +108,10 @@ py::object voxelizeBlock(const ToolpathObject& print, const py::object& box, con
     choices.print = printOptionsOf(keywords);
     choices.attributes.emplace();
     keywords.finish();
+    if (print.toolpath->belt_angle != 0)
+        throw UsageError(
+            "voxelize_block: the samples of a print on a belt lean with its layers, and a block has no transform; "
+            "take voxelize(), whose level set has one");
     const bool all = box.is_none();
     const voxelize::Bounds wanted = all ? voxelize::Bounds() : boxOf(box);
     const exporter::LevelSetPlan plan = callLong(

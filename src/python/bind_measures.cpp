@@ -86,6 +86,7 @@ py::object comparePrint(const ToolpathObject& print, const py::object& model, co
         const exporter::LevelSetPlan plan(*print.toolpath, std::move(choices));
         voxelize::VoxelizeOptions outside;
         outside.interior = voxelize::Interior::cull;
+        outside.placement = voxelize::placementOf(*print.toolpath);
         outside.progress = report;
         const std::vector<std::uint32_t> part =
             gcode::beadsUpTo(gcode::Purpose::part, gcode::purposesOf(*print.toolpath), plan.selection());

@@ -289,6 +289,8 @@ void addFacts(py::class_<ToolpathObject>& type) {
     fact("filament_diameter", &gcode::Toolpath::filament_diameter, "mm, of tool 0.");
     fact("layer_height", &gcode::Toolpath::layer_height, "mm, nominal, from the file's settings; 0 if unknown.");
     fact("layer_count", &gcode::Toolpath::layer_count, "Number of the last layer.");
+    fact("belt_angle", &gcode::Toolpath::belt_angle,
+         "Degrees: turned by it about x, the beads lie as in the world; 0 but on a belt.");
     fact("extrusion_rule", &gcode::Toolpath::extrusion_rule, "Unit of E and its source.");
     fact("cut_short", &gcode::Toolpath::cut_short, "Why the program seems truncated; empty if it doesn't.");
     fact("filament_mm", &gcode::Toolpath::filament_mm, "mm of filament in the beads.");

@@ -21,7 +21,7 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "states are little endian");
 
 constexpr std::string_view kMagic = "stratum.Toolpath";
-constexpr std::uint32_t kVersion = 4;  // changes with every field
+constexpr std::uint32_t kVersion = 5;  // changes with every field
 constexpr const char* kRemedy = "; read the G-code again";
 
 /// Values one after the other, as the machine holds them. Reader has the same functions.
@@ -138,7 +138,7 @@ private:
 template <typename Archive, typename Facts>
 void visitStated(Archive& archive, Facts& facts) {
     auto& [seconds, model_seconds, grams, materials, profiles, nozzles, densities, prices, printer, layer, first_layer,
-           bed, excluded, programs_left_out] = facts;
+           bed, excluded, belt, belt_angle, programs_left_out] = facts;
     archive.value(seconds);
     archive.value(model_seconds);
     archive.value(grams);
@@ -152,6 +152,8 @@ void visitStated(Archive& archive, Facts& facts) {
     archive.value(first_layer);
     archive.value(bed);
     archive.value(excluded);
+    archive.value(belt);
+    archive.value(belt_angle);
     archive.value(programs_left_out);
 }
 
@@ -200,9 +202,9 @@ void visitTimes(Archive& archive, Times& times) {
 template <typename Archive, typename Path>
 void visitToolpath(Archive& archive, Path& toolpath) {
     auto& [beads, arcs, runs, objects, warnings, slicer, firmware, format, filament_diameter, layer_height, deposit,
-           layer_count, tool_colors, palette_tools, color_changes, temperatures, fans, timing, flow, filament_by_tool,
-           footer_by_tool, footer_mm, stated, extrusion_rule, firmware_reason, cut_short, filament_mm, prime_mm,
-           extruded_mm3] = toolpath;
+           layer_count, belt_angle, tool_colors, palette_tools, color_changes, temperatures, fans, timing, flow,
+           filament_by_tool, footer_by_tool, footer_mm, stated, extrusion_rule, firmware_reason, cut_short, filament_mm,
+           prime_mm, flushed_mm, extruded_mm3] = toolpath;
     archive.records(beads);
     archive.each(arcs, [&archive](auto& item) {
         auto& [center_x, center_y, sweep, line] = item;
@@ -226,6 +228,7 @@ void visitToolpath(Archive& archive, Path& toolpath) {
     archive.value(layer_height);
     visitDeposit(archive, deposit);
     archive.value(layer_count);
+    archive.value(belt_angle);
     archive.value(tool_colors);
     archive.value(palette_tools);
     archive.each(color_changes, [&archive](auto& item) {
@@ -253,6 +256,7 @@ void visitToolpath(Archive& archive, Path& toolpath) {
     archive.value(cut_short);
     archive.value(filament_mm);
     archive.value(prime_mm);
+    archive.value(flushed_mm);
     archive.value(extruded_mm3);
 }
 static_assert(sizeof(gcode::Bead) == 60 && sizeof(gcode::Run) == 16 && sizeof(gcode::BeadTiming) == 24 &&

@@ -9,6 +9,7 @@
 #include "report/walls/roughness.h"
 #include "report/walls/thinnest_wall.h"
 #include "voxelize/beads/layer_stack.h"
+#include "voxelize/beads/placement.h"
 #include "voxelize/grid/deposit_balance.h"
 
 #include <fmt/format.h>
@@ -30,6 +31,16 @@ const Definition& definitionOf(std::span<const Definition> definitions, std::str
                                     [key](const Definition& definition) { return definition.key == key; });
     assert(found != definitions.end());
     return *found;
+}
+
+// The tensor in axes of the world.
+Matrix3 turned(const Matrix3& tensor, const voxelize::Placement& placement) {
+    if (placement.tilt == 0) return tensor;
+    Matrix3 rows;  // T R^T, whose rows are R T's, since T is symmetric
+    for (std::size_t a = 0; a < 3; ++a) rows[a] = worldOf(tensor[a], placement);
+    Matrix3 result;
+    for (std::size_t b = 0; b < 3; ++b) result[b] = worldOf({rows[0][b], rows[1][b], rows[2][b]}, placement);
+    return result;
 }
 
 double percent(double part, double whole) { return whole > 0 ? 100 * part / whole : 0; }
@@ -207,7 +218,8 @@ private:
         const double h = lattice_.voxel_size;
         const double v = sums.volume;
         const Vector3 middle{sums.first[0] / v, sums.first[1] / v, sums.first[2] / v};
-        add("center_of_mass", Vector3{middle[0] * h, middle[1] * h, middle[2] * h + lattice_.origin_z});
+        const voxelize::Placement lies = voxelize::placementOf(toolpath_);
+        add("center_of_mass", worldOf({middle[0] * h, middle[1] * h, middle[2] * h + lattice_.origin_z}, lies));
         // Central second moments, then the tensor.
         constexpr int kIndex[3][3] = {{0, 3, 4}, {3, 1, 5}, {4, 5, 2}};
         const auto central = [&](std::size_t a, std::size_t b) {
@@ -217,6 +229,7 @@ private:
         Matrix3 tensor{};
         for (std::size_t a = 0; a < 3; ++a)
             for (std::size_t b = 0; b < 3; ++b) tensor[a][b] = (a == b ? trace : 0) - central(a, b);
+        tensor = turned(tensor, lies);
         add("inertia_of_volume", tensor);
         if (!mass_) {
             leaveOut("inertia", "the density is not known", "give it with --density G_CM3");
@@ -259,9 +272,10 @@ private:
         if (outside != nullptr) {
             if (const auto wall = findThinnestWall(grid_, toolpath_, beads, lattice_, map, *outside)) {
                 const gcode::Bead& bead = toolpath_.beads[wall->bead];
-                add("thinnest_wall", wall->thickness).details = {{"at_mm", Vector3{wall->at.x, wall->at.y, wall->at.z}},
-                                                                 {"line", static_cast<double>(toolpath_.lineOf(bead))},
-                                                                 {"measured", static_cast<double>(wall->walls)}};
+                add("thinnest_wall", wall->thickness).details = {
+                    {"at_mm", worldOf({wall->at.x, wall->at.y, wall->at.z}, voxelize::placementOf(toolpath_))},
+                    {"line", static_cast<double>(toolpath_.lineOf(bead))},
+                    {"measured", static_cast<double>(wall->walls)}};
             } else {
                 leaveOut("thinnest_wall", "no bead of the part has the outside beside it", "select more of the print");
             }
@@ -302,8 +316,13 @@ private:
                          "none for such a print");
             return;
         }
-        add("bed_contact", contact.bed_contact);
-        add("bed_outline", contact.bed_outline);
+        if (toolpath_.belt_angle == 0) {
+            add("bed_contact", contact.bed_contact);
+            add("bed_outline", contact.bed_outline);
+        } else {
+            for (const char* key : {"bed_contact", "bed_outline"})
+                leaveOut(key, "the print lies on a belt, and its layers lean over that", "none for such a print");
+        }
         addLayerColumns(contact);
         LayerContact all;
         double least = std::numeric_limits<double>::max();

@@ -4,6 +4,7 @@
 #include "base/error.h"
 #include "gcode/summary.h"
 #include "shade/brdf/preset_names.h"
+#include "voxelize/beads/placement.h"
 #include "voxelize/grid/attributes.h"
 
 #include <fmt/format.h>
@@ -46,8 +47,10 @@ Json factsOf(const gcode::Toolpath& toolpath) {
         objects.push_back({{"number", n}, {"name", toolpath.objects[n].substr(0, 200)}});
     std::set<int> tools;
     for (const gcode::Run& run : toolpath.runs) tools.insert(run.tool);
+    const voxelize::Placement lies = voxelize::placementOf(toolpath);
     double highest = 0.0;
-    for (const gcode::Bead& bead : toolpath.beads) highest = std::max<double>(highest, bead.z1);
+    for (const gcode::Bead& bead : toolpath.beads)
+        highest = std::max(highest, voxelize::worldOf({bead.x1, bead.y1, bead.z1}, lies)[2]);
     Json facts{{"layers", toolpath.layer_count}, {"features", std::move(features)},
                {"objects", std::move(objects)},  {"tools", tools},
                {"slicer", toolpath.slicer},      {"beads", toolpath.beads.size()},

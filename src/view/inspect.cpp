@@ -1,6 +1,7 @@
 #include "view/inspect.h"
 
 #include "ondemand/bead_lookup.h"
+#include "voxelize/beads/placement.h"
 
 #include <glm/matrix.hpp>
 
@@ -17,6 +18,7 @@ Json list(const glm::dvec3& v) { return Json::array({v.x, v.y, v.z}); }
 Json describe(const gcode::Toolpath& toolpath, std::uint32_t index) {
     const gcode::Bead& bead = toolpath.beads[index];
     const gcode::Run& run = toolpath.runOf(bead);
+    const voxelize::Placement lies = voxelize::placementOf(toolpath);
     Json json{{"number", index},
               {"layer", run.layer},
               {"feature", gcode::featureName(run.feature)},
@@ -26,8 +28,8 @@ Json describe(const gcode::Toolpath& toolpath, std::uint32_t index) {
               {"length_mm", gcode::beadLength(toolpath, bead)},
               {"volume_mm3", gcode::laidVolume(toolpath, index)},
               {"feed_rate_mm_s", run.speed},
-              {"from", {double(bead.x0), double(bead.y0), double(bead.z0)}},
-              {"to", {double(bead.x1), double(bead.y1), double(bead.z1)}},
+              {"from", voxelize::worldOf({bead.x0, bead.y0, bead.z0}, lies)},
+              {"to", voxelize::worldOf({bead.x1, bead.y1, bead.z1}, lies)},
               {"line", toolpath.lineOf(bead)}};
     if (run.object != 0) json["object"] = toolpath.objects[run.object].substr(0, 200);
     if (!toolpath.timing.empty()) {
@@ -40,7 +42,7 @@ Json describe(const gcode::Toolpath& toolpath, std::uint32_t index) {
     return json;
 }
 
-// The bead at a place of an object, which is a print at its own space.
+// The bead at a place of an object, which is a print in the space of its file.
 std::optional<std::uint32_t> beadAt(const assemble::TracedObjects& objects, const assemble::ObjectOptions& object,
                                     const trace::Hit& hit) {
     if (objects.prints.empty()) return std::nullopt;

@@ -2,6 +2,7 @@
 
 #include "base/stopwatch.h"
 #include "shade/palette/filament_color.h"
+#include "voxelize/beads/placement.h"
 #include "voxelize/beads/selection.h"
 
 #include <fmt/format.h>
@@ -115,10 +116,13 @@ ViewedPicture ViewScene::standIn(const PicturePlan& plan, const ViewState& state
     const Slab slab = slabOf(*toolpath, first, last);
     std::vector<trace::ClipPlane> planes;
     std::optional<double> bed = whole_->bed_height;
-    if (std::isfinite(slab.high)) planes.push_back({{0.0, 0.0, 1.0}, slab.high});
+    const voxelize::Placement lies = voxelize::placementOf(*toolpath);
+    const auto [x, y, z] = voxelize::worldOf({0.0, 0.0, 1.0}, lies);
+    const glm::dvec3 up(x, y, z);  // across the layers
+    if (std::isfinite(slab.high)) planes.push_back({up, slab.high});
     if (first > 1 && std::isfinite(slab.low)) {
-        planes.push_back({{0.0, 0.0, -1.0}, -slab.low});
-        bed = slab.low;
+        planes.push_back({-up, -slab.low});
+        if (lies.tilt == 0) bed = slab.low;
     }
     if (!bed && plan.options.scene.bed) bed = whole_->bed_height = shade::restingHeight(*whole_->traced.intersector);
     return stage(*whole_, plan, trace::makeClipIntersector(whole_->traced.intersector, std::move(planes)), bed, width,

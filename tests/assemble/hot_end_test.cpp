@@ -58,6 +58,19 @@ TEST(HotEnd, IsSmallerAboveASmallPart) {
     EXPECT_NEAR(top, 32, 1e-9);
 }
 
+// As the gantry of a belt printer does: its axis is the layers' normal.
+TEST(HotEnd, LeansWithTheLayers) {
+    const std::shared_ptr<const trace::Intersector> ball = trace::makeSdfIntersector(trace::sdfSphere({0, 0, -9}, 1));
+    const auto both = withHotEnd(ball, {0, 0, 0}, makeHotEndParts(HotEndShape::slender), 1.0, 45.0);
+    const auto tracer = both->makeTracer();
+    const double half = std::sqrt(0.5);
+    trace::Hit hit;
+    // Down along the axis, which leads back along the belt as it rises.
+    ASSERT_TRUE(tracer->intersect({glm::dvec3(0, -half, half) * 100.0, {0, half, -half}}, hit));
+    EXPECT_NEAR(hit.t, 100 - 27, 1e-6);
+    EXPECT_FALSE(tracer->intersect({{0, 0, 100}, {0, 0, -1}, 0.0, 80.0}, hit));
+}
+
 // Lengths of public models of the maker's drawings: in all, from the tip to the lowest fin, across the fins, and of the
 // block.
 TEST(HotEnd, HasTheOutlineOfItsMaker) {

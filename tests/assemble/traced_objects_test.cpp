@@ -2,6 +2,8 @@
 
 #include "assemble/shape/shape.h"
 #include "base/error.h"
+#include "belt_box.h"
+#include "export/plan/level_set_plan.h"
 #include "prints.h"
 #include "scratch_folder.h"
 #include "shade/map_files.h"
@@ -11,6 +13,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
 #include <optional>
 #include <string>
 #include <utility>
@@ -95,6 +98,73 @@ TEST(TracedObjects, FilesAreReadOnceAndStandWhereTheyArePut) {
     EXPECT_TRUE(test::hitsFromAbove(*objects.intersector, 21.01, 2.01));
     EXPECT_TRUE(test::hitsFromAbove(*objects.intersector, -20.01, 0.01));
     EXPECT_FALSE(test::hitsFromAbove(*objects.intersector, 10, 0));
+}
+
+// The .vdb that gcode2vdb writes of it.
+std::filesystem::path writeBelt(const std::filesystem::path& path, const std::string& program,
+                                const TracingOptions& options) {
+    openvdb::initialize();
+    const gcode::Toolpath toolpath = gcode::readToolpath(program, "belt.gcode", options.prints.print.read);
+    exporter::LevelSetChoices choices;
+    choices.print = options.prints.print;
+    const exporter::LevelSetPlan plan(toolpath, choices);
+    const auto grid =
+        voxelize::Voxelizer(toolpath, plan.selection(), plan.lattice(), plan.voxelizeOptions()).printAll();
+    exporter::describe(*grid, plan.lattice(), plan.provenance("belt.gcode", "", plan.selection()));
+    exporter::writeVdb({grid}, path);
+    return path;
+}
+
+TEST(TracedObjects, APrintOnABeltLiesAsItsLevelSetDoes) {
+    const test::ScratchFolder scratch;
+    const test::BeltBox belt;
+    std::ofstream(scratch / "belt.gcode") << belt.program();
+    TracingOptions options;
+    options.prints.print.lattice.voxel_size = 0.125;
+    options.prints.print.read.belt_angle = belt.degrees;
+    options.prints.outline = true;
+    const TracedObjects lazy = readTracedObjects({test::objectOf(scratch / "belt.gcode")}, options);
+    const TracedObjects whole =
+        readTracedObjects({test::objectOf(writeBelt(scratch / "belt.vdb", belt.program(), options))}, options);
+    ASSERT_TRUE(lazy.part && whole.part);
+    EXPECT_EQ(lazy.part->min, whole.part->min);
+    EXPECT_EQ(lazy.part->max, whole.part->max);
+    EXPECT_EQ(lazy.outline, whole.outline);
+    const auto box = belt.box();
+    EXPECT_NEAR(lazy.part->max.z, box[5], 1e-4);
+    const auto of_lazy = lazy.intersector->makeTracer();
+    const auto of_whole = whole.intersector->makeTracer();
+    int hits = 0;
+    double sum = 0;
+    for (int n = 0; n < 2000; ++n) {
+        const auto share = [n](double step) { return std::fmod(0.5 + n * step, 1.0); };
+        const glm::dvec3 to(glm::mix(box[0], box[3], share(0.618034)), glm::mix(box[1], box[4], share(0.754878)),
+                            glm::mix(box[2], box[5], share(0.569840)));
+        trace::Ray ray;
+        ray.origin = {to.x - 7, to.y - 40 + 80 * share(0.3247), to.z + 30};
+        ray.direction = glm::normalize(to - ray.origin);
+        trace::Hit one;
+        trace::Hit other;
+        const bool hit = of_lazy->intersect(ray, one);
+        ASSERT_EQ(hit, of_whole->intersect(ray, other)) << n;
+        if (!hit) continue;
+        ++hits;
+        EXPECT_NEAR(one.t, other.t, 1e-9);
+        EXPECT_NEAR(glm::dot(one.normal, other.normal), 1, 1e-9);
+        // And where the lines are in the world.
+        const double off = belt.distance(one.position.x, one.position.y, one.position.z);
+        EXPECT_NEAR(off, 0, 0.0625);  // half a voxel, in creases
+        sum += std::abs(off);
+    }
+    EXPECT_GT(hits, 1000);
+    EXPECT_LT(sum / hits, 0.01);
+    // A scene's transform comes after the tilt.
+    ObjectOptions turned = test::objectOf(scratch / "belt.gcode");
+    turned.placement = trace::Placement::of(glm::dvec3(2.0), {0, 0, 90}, {100, 0, 0});
+    const TracedObjects moved = readTracedObjects({turned}, options);
+    EXPECT_NEAR(moved.part->max.z, 2 * box[5], 1e-3);
+    EXPECT_NEAR(moved.part->max.x, 100 - 2 * box[1], 1e-3);
+    EXPECT_NEAR(moved.part->min.y, 2 * box[0], 1e-3);
 }
 
 TEST(TracedObjects, EveryMethodTracesTheSameSphere) {

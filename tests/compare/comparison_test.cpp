@@ -83,6 +83,19 @@ TEST(Comparison, DeviationsOfVoxelsAreThoseOfTheirSurface) {
         ASSERT_NEAR(static_cast<double>(*value), 0.15, 0.25 * kVoxel) << value.getCoord();
 }
 
+// As on a belt: the voxels lean, and so do the directions to their surface.
+TEST(Comparison, DeviationsOfLeaningVoxelsAreThoseOfTheirSurface) {
+    openvdb::initialize();
+    const ClosedModel model(test::ellipsoidModel({5, 5, 5}, 200), "sphere");
+    const auto surface = sphere(5.15, {0, 0, 0});
+    surface->transform().postRotate(std::acos(-1.0) / 4, openvdb::math::X_AXIS);
+    const Comparison found = compareToModel(*surface, model, onTheBed());
+    EXPECT_NEAR(found.print_to_model.all.mean, 0.15, 0.01);
+    const auto grid = deviationGrid(*surface, surface->transform(), model, found);
+    for (auto value = grid->cbeginValueOn(); value; ++value)
+        ASSERT_NEAR(static_cast<double>(*value), 0.15, 0.25 * kVoxel) << value.getCoord();
+}
+
 TEST(Comparison, DoesNotDependOnTheNumberOfThreads) {
     openvdb::initialize();
     const ClosedModel model(test::ellipsoidModel({5, 5, 5}, 50), "sphere");

@@ -54,6 +54,17 @@ TEST(Summary, PrimeLinesAreApart) {
     EXPECT_EQ(summarize(readProgram("M83\nG1 Z.2\nG1 X9 E4\n")).find("prime"), std::string::npos);
 }
 
+// BambuStudio's sums have what is pushed out while filaments change.
+TEST(Summary, WhatIsFlushedIsInTheSum) {
+    const std::string text =
+        summarize(readProgram("; total filament length [mm] : 23.5\nM83\nG1 Z.2\nG1 X9 E4\nG1 E-2\n; FLUSH_START\nG1 "
+                              "E2\nG1 E20 F200\nG1 E.5\n"
+                              "; FLUSH_END\nG1 E-3\nG1 E3\nG1 X0 E1\nG1 E1\n"));
+    EXPECT_NE(text.find("all: 27.50 mm of filament"), std::string::npos) << text;
+    EXPECT_NE(text.find("flushed while filaments change: 22.50 mm, which are in that sum\n"), std::string::npos)
+        << text;
+}
+
 TEST(Summary, Colors) {
     const auto has = [](const std::string& program, const std::string& part) {
         const std::string text = summarize(readProgram(program));

@@ -109,7 +109,7 @@ TEST(InpFile, HasNodesElementsAndSets) {
     const test::ScratchFolder folder;
     const Made made;
     InpOptions options;
-    options.offset[0] = 10;
+    options.placement.offset[0] = 10;
     options.elastic = parseElastic("3400,3000,2800,0.35,0.34,0.4,1200,1100,1000");
     const InpReport report = writeInp(made.elements, made.mesh, made.toolpath, options, folder.path() / "a.inp");
     EXPECT_EQ(report.directions, 2U);
@@ -136,6 +136,35 @@ TEST(InpFile, HasNodesElementsAndSets) {
     EXPECT_EQ(elements, made.elements.list.size());
     EXPECT_EQ(members["*ELSET, ELSET=LAYER_1, GENERATE"] + members["*ELSET, ELSET=LAYER_2, GENERATE"], elements);
     EXPECT_EQ(members["*ELSET, ELSET=ALONG_0, GENERATE"] + members["*ELSET, ELSET=ALONG_90, GENERATE"], elements);
+}
+
+TEST(InpFile, OfAPrintOnABeltLiesInTheWorld) {
+    const test::ScratchFolder folder;
+    Made made;
+    made.toolpath.belt_angle = 45;
+    InpOptions options;
+    options.placement.offset[2] = 3;
+    options.placement.tilt = 45;
+    options.elastic = parseElastic("3400,3000,2800,0.35,0.34,0.4,1200,1100,1000");
+    writeInp(made.elements, made.mesh, made.toolpath, options, folder.path() / "a.inp");
+    const double half = std::sqrt(0.5);
+    bool along_y = false;
+    for (const Block& block : blocksOf(folder.path() / "a.inp")) {
+        if (block.keyword.starts_with("*NODE,"))
+            for (std::size_t n = 0; n < block.lines.size(); ++n) {
+                const double y = made.elements.origin[1] + 0.1 * made.mesh.nodes[n].j;
+                const double z = made.elements.origin[2] + 0.1 * made.mesh.nodes[n].k;
+                EXPECT_NEAR(block.lines[n][2], half * (y - z), 1e-6);
+                EXPECT_NEAR(block.lines[n][3], half * (y + z) + 3, 1e-6);
+            }
+        if (!block.keyword.starts_with("*ORIENTATION, NAME=ALONG_90,")) continue;
+        along_y = true;
+        const std::vector<double> axes{0, half, half, -1, 0, 0};
+        ASSERT_EQ(block.lines.at(0).size(), axes.size());
+        for (std::size_t n = 0; n < axes.size(); ++n) EXPECT_NEAR(block.lines[0][n], axes[n], 1e-6);
+    }
+    EXPECT_TRUE(along_y);
+    for (const NamedSet& set : nodeSets(made.elements, made.mesh, made.toolpath)) EXPECT_NE(set.name, "BED");
 }
 
 TEST(InpFile, HasTheSameBytesForAnyNumberOfThreads) {

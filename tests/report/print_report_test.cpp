@@ -55,6 +55,29 @@ TEST(PrintReport, VolumeAndCentreOfOneBead) {
     EXPECT_EQ(numberOf(report, "inner_surface"), 0);
 }
 
+// Of a print on a belt places and axes are those of the world.
+TEST(PrintReport, OfABeadOnABelt) {
+    const OneBead bead;
+    gcode::Toolpath toolpath = pathOf(bead);
+    const PrintReport level = reportOfAll(toolpath, layeredLattice(bead.height, 10));
+    toolpath.belt_angle = 45;
+    const PrintReport report = reportOfAll(toolpath, layeredLattice(bead.height, 10));
+    const double half = std::sqrt(0.5);
+    const auto& center = std::get<Vector3>(report.find("center_of_mass")->value);
+    EXPECT_NEAR(center[1], half * (2 - bead.height / 2), 0.01);
+    EXPECT_NEAR(center[2], half * (2 + bead.height / 2), 0.01);
+    // About x nothing changes; the axes of y and z mix.
+    const auto& flat = std::get<Matrix3>(level.find("inertia_of_volume")->value);
+    const auto& leaning = std::get<Matrix3>(report.find("inertia_of_volume")->value);
+    const double scale = flat[1][1];
+    EXPECT_NEAR(leaning[0][0], flat[0][0], 1e-9 * scale);
+    EXPECT_NEAR(leaning[1][1], (flat[1][1] + flat[2][2]) / 2 - flat[1][2], 1e-9 * scale);
+    EXPECT_NEAR(leaning[1][2], (flat[1][1] - flat[2][2]) / 2, 1e-9 * scale);
+    EXPECT_NEAR(leaning[1][2], leaning[2][1], 1e-9 * scale);
+    EXPECT_EQ(report.find("bed_contact"), nullptr);
+    EXPECT_EQ(numberOf(report, "plastic_volume"), numberOf(level, "plastic_volume"));
+}
+
 // A tube of one bead a layer: its section is turned about the axis, exactly.
 struct Tube {
     double radius = 6, width = 1.2, height = 0.8;

@@ -1,6 +1,8 @@
 #include "view/inspect.h"
 
+#include "belt_box.h"
 #include "given_tile.h"
+#include "scratch_folder.h"
 #include "view/program_lines.h"
 
 #include <gtest/gtest.h>
@@ -43,6 +45,41 @@ TEST(Inspect, ABeadAndItsLine) {
         }
     }
     EXPECT_EQ(hits, 9);
+}
+
+// On a belt a picture shows the print as it lies in the world, and a click finds the line there.
+TEST(Inspect, ABeadOnABelt) {
+    const test::ScratchFolder scratch;
+    const test::BeltBox belt;
+    GivenInput given = test::givenTile(0.125);
+    given.path = given.objects.front().vdb = (scratch / "belt.gcode").string();
+    given.options.tracing.prints.print.read.belt_angle = belt.degrees;
+    std::ofstream(given.path) << belt.program();
+    Document document(given);
+    ViewScene scene(document);
+    ViewState state;
+    state.named = shade::View::top;
+    const PicturePlan plan = planPicture(document.given(), state);
+    scene.makeObjects(plan, {});
+    EXPECT_NEAR(document.facts()["print"]["height_mm"], belt.layers().back().back().z, 0.3);
+    const ViewedPicture picture = scene.picture(plan, 100, 100);
+    const auto found = inspect(document, scene, picture, {50.3, 50.7});
+    ASSERT_TRUE(found["hit"]);
+    ASSERT_TRUE(found.contains("bead"));
+    const auto& from = found["bead"]["from"];
+    EXPECT_NEAR(from[0], belt.x0, 1e-6);
+    for (const int axis : {1, 2}) EXPECT_NEAR(from[axis], found["position"][axis], belt.width);
+    // What stands in for fewer layers is cut across them.
+    state.last_layer = 10;
+    const PicturePlan fewer = planPicture(document.given(), state);
+    ASSERT_TRUE(scene.canStandIn(fewer));
+    const ViewedPicture cut = scene.standIn(fewer, state, 100, 100);
+    const auto tracer = cut.print->makeTracer();
+    trace::Hit hit;
+    hit.t = trace::kInfinity;
+    // The layers begin at the end of the print that has the larger y.
+    EXPECT_TRUE(tracer->intersect({{8.0, belt.y1 - 0.5, 50.0}, {0.0, 0.0, -1.0}, 0.0, trace::kInfinity}, hit));
+    EXPECT_FALSE(tracer->intersect({{8.0, belt.y0 + 0.5, 50.0}, {0.0, 0.0, -1.0}, 0.0, trace::kInfinity}, hit));
 }
 
 TEST(Inspect, NothingBesideThePrint) {

@@ -123,8 +123,9 @@ void Conversion::writeGrids(const openvdb::FloatGrid::Ptr& grid, openvdb::GridPt
     const ProgressNote note("writing", o_.common.quiet);
     exporter::describe(*grid, plan_->lattice(), provenance_);
     if (o_.compare.grid)
-        grids.push_back(compare::deviationGrid(*grid, *voxelize::makeTransform(plan_->lattice(), {}),
-                                               *comparison_->model, comparison_->found));
+        grids.push_back(
+            compare::deviationGrid(*grid, *voxelize::makeTransform(plan_->lattice(), voxelize::placementOf(toolpath_)),
+                                   *comparison_->model, comparison_->found));
     grids.insert(grids.begin(), grid);
     if (exporter::isNanoPath(job.path))
         exporter::writeNano(grids, job.path, o_.file);

@@ -100,7 +100,7 @@ Json Conversion::skipped(const voxelize::VoxelizeReport& built) const {
 
 Json Conversion::report(const Json& left_out, int threads, double total) const {
     Json toolpath_report = describeToolpath(toolpath_);
-    toolpath_report["selected_bbox_mm"] = {plan_->bounds().min, plan_->bounds().max};
+    toolpath_report["selected_bbox_mm"] = {plan_->lyingBounds().min, plan_->lyingBounds().max};
     return {{"input",
              {{"path", input_},
               {"bytes", file_.bytes().size()},

@@ -99,7 +99,7 @@ Json writeElements(const ConvertCommand& o, const gcode::Toolpath& toolpath, std
     const mechanics::Hexahedra mesh = mechanics::hexahedraOf(elements, o.elements.most_nodes);
     mechanics::InpOptions options;
     if (!o.elements.elastic.empty()) options.elastic = mechanics::parseElastic(o.elements.elastic);
-    std::copy_n(placement.offset, 3, options.offset);
+    options.placement = placement;
     options.source = source;
     mechanics::InpReport report;
     {

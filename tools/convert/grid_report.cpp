@@ -25,10 +25,10 @@ GridNumbers numbersOf(const openvdb::FloatGrid& grid) {
 
 Json describeGrid(const GridNumbers& grid, const voxelize::Lattice& lattice) {
     const exporter::GridStatistics& counted = grid.counted.statistics;
-    const openvdb::Vec3d a = grid.transform->indexToWorld(counted.active_box.min());
-    const openvdb::Vec3d b = grid.transform->indexToWorld(counted.active_box.max());
-    const openvdb::Vec3d low = openvdb::math::minComponent(a, b);
-    const openvdb::Vec3d high = openvdb::math::maxComponent(a, b);
+    const openvdb::BBoxd box = grid.transform->indexToWorld(
+        openvdb::BBoxd(counted.active_box.min().asVec3d(), counted.active_box.max().asVec3d()));
+    const openvdb::Vec3d low = box.min();
+    const openvdb::Vec3d high = box.max();
     const double unit = grid.transform->voxelSize()[0] / lattice.voxel_size;
     return {
         {"voxel_size_mm", lattice.voxel_size},

@@ -80,6 +80,7 @@ ModelComparison compareWithModel(const ConvertCommand& o, const gcode::Toolpath&
     const ProgressNote note("comparing", o.common.quiet);
     voxelize::VoxelizeOptions outside;
     outside.interior = voxelize::Interior::cull;
+    outside.placement = voxelize::placementOf(toolpath);
     const std::vector<std::uint32_t> part =
         gcode::beadsUpTo(gcode::Purpose::part, gcode::purposesOf(toolpath), selection);
     const openvdb::FloatGrid::Ptr grid = voxelize::voxelize(toolpath, part, lattice, outside);

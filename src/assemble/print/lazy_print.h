@@ -31,7 +31,7 @@ public:
     /// @param levels       from the finest; at least one
     /// @param moments      of a growing print: the beads before this index are printed; ascending, the last one is all
     /// @param cache_bytes  bound on the samples of each level
-    /// @param tips         mm, by moment: where the nozzle is
+    /// @param tips         mm in the world, by moment: where the nozzle is
     LazyPrint(std::vector<LazyLevel> levels, std::vector<std::uint32_t> moments, std::vector<glm::dvec3> tips,
               Times times, std::size_t cache_bytes);
 
@@ -39,7 +39,7 @@ public:
     std::size_t moments() const { return moments_.size(); }
     /// The beads before this index are printed at a moment.
     std::uint32_t beadsAt(std::size_t moment) const { return moments_[moment]; }
-    /// Where the nozzle is at a moment, mm in print space: at the end of the last bead.
+    /// Where the nozzle is at a moment, mm in the world: at the end of the last bead.
     const glm::dvec3& tipAt(std::size_t moment) const { return tips_[moment]; }
     /// Shows a moment, 0..moments() - 1. Bricks that don't change are kept.
     void show(std::size_t moment);

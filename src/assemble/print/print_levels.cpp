@@ -53,7 +53,7 @@ std::vector<std::uint32_t> momentsOf(int series, bool by_time, const gcode::Tool
     return moments;
 }
 
-// Ends of the last selected beads before each moment; of the first one, if there is none.
+// Ends of the last selected beads before each moment, in the world; of the first one, if there is none.
 std::vector<glm::dvec3> tipsOf(const std::vector<std::uint32_t>& moments, const std::vector<std::uint32_t>& selection,
                                const gcode::Toolpath& toolpath) {
     std::vector<glm::dvec3> tips;
@@ -61,7 +61,8 @@ std::vector<glm::dvec3> tipsOf(const std::vector<std::uint32_t>& moments, const 
     for (const std::uint32_t moment : moments) {
         const auto after = std::lower_bound(selection.begin(), selection.end(), moment);
         const gcode::Bead& bead = toolpath.beads[after == selection.begin() ? selection.front() : *(after - 1)];
-        tips.emplace_back(bead.x1, bead.y1, bead.z1);
+        const auto [x, y, z] = voxelize::worldOf({bead.x1, bead.y1, bead.z1}, voxelize::placementOf(toolpath));
+        tips.emplace_back(x, y, z);
     }
     return tips;
 }
@@ -93,6 +94,8 @@ std::vector<voxelize::Lattice> latticesOf(const Source& source, const voxelize::
 std::vector<PrintLevel> fieldsOf(const Source& source, const std::vector<voxelize::Lattice>& lattices,
                                  const std::vector<ondemand::VoxelLevel>& levels, const glm::dvec3& eye) {
     std::vector<PrintLevel> fields;
+    const voxelize::Placement placement = voxelize::placementOf(*source.toolpath);
+    const auto [x, y, z] = voxelize::printOf({eye.x, eye.y, eye.z}, placement);
     double from = 0;
     for (std::size_t n = 0; n < levels.size(); ++n) {
         constexpr double kMarginVoxels = 2;
@@ -101,11 +104,11 @@ std::vector<PrintLevel> fieldsOf(const Source& source, const std::vector<voxeliz
         std::vector<std::uint32_t> near;
         if (!last) {
             const double to = levels[n + 1].from + lattice.background() + kMarginVoxels * lattice.voxel_size;
-            near = ondemand::beadsWithin(*source.toolpath, source.selection, eye, to);
+            near = ondemand::beadsWithin(*source.toolpath, source.selection, {x, y, z}, to);
             if (near.empty()) continue;
         }
         fields.push_back({std::make_shared<ondemand::PrintField>(source.toolpath, last ? source.selection : near,
-                                                                 lattice, voxelize::Placement(), source.path),
+                                                                 lattice, placement, source.path),
                           from});
         if (!last) from = levels[n + 1].from;
     }
@@ -209,9 +212,13 @@ private:
         if (!request_.printed.empty()) cut(selection_, request_.printed, *toolpath_);
         bounds_ = voxelize::boundsOf(*toolpath_, selection_);
         const std::vector<gcode::Purpose> purposes = gcode::purposesOf(*toolpath_);
-        result_.part = voxelize::partBounds(*toolpath_, purposes, selection_);
+        const voxelize::Placement placement = voxelize::placementOf(*toolpath_);
+        const voxelize::Bounds part = voxelize::partBounds(*toolpath_, purposes, selection_);
+        result_.part =
+            placement.tilt == 0 ? part : voxelize::partBounds(*toolpath_, purposes, selection_, placement.tilt);
         if (!request_.outline) return;
-        for (const auto& [x, y, z] : voxelize::partOutline(*toolpath_, purposes, selection_, result_.part))
+        for (const auto& [x, y, z] :
+             voxelize::placed(voxelize::partOutline(*toolpath_, purposes, selection_, part), placement))
             result_.outline.emplace_back(x, y, z);
     }
 
@@ -219,7 +226,10 @@ private:
         if (request_.print.voxel_auto) {
             if (!request_.pixel_spread)
                 throw UsageError("--voxel-size auto: nothing says what a pixel spans; give a number");
-            pixels_ = request_.pixel_spread(bounds_, result_.part, result_.outline);
+            pixels_ = request_.pixel_spread(toolpath_->belt_angle == 0
+                                                ? bounds_
+                                                : voxelize::boundsOf(*toolpath_, selection_, toolpath_->belt_angle),
+                                            result_.part, result_.outline);
         }
         lattice_ = voxelize::latticeFor(request_.print, *toolpath_, selection_, bounds_, voxelize::Interior::keep,
                                         pixels_.smallest);

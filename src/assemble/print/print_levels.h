@@ -53,14 +53,14 @@ struct PrintLevel {
 
 /// A print that has been read.
 struct PrintLevels {
-    std::vector<PrintLevel> levels;        ///< from the nearest and finest outwards; the last one is of all beads
-    glm::dvec3 eye{0.0};                   ///< mm; if there are several levels
-    std::vector<std::uint32_t> moments;    ///< of the series: the beads before this index are printed; the last is all
-    std::vector<glm::dvec3> tips;          ///< mm, by moment: where the nozzle is when the last bead is finished
+    std::vector<PrintLevel> levels;      ///< from the nearest and finest outwards; the last one is of all beads
+    glm::dvec3 eye{0.0};                 ///< mm, world space; if there are several levels
+    std::vector<std::uint32_t> moments;  ///< of the series: the beads before this index are printed; the last is all
+    std::vector<glm::dvec3> tips;  ///< mm, world space, by moment: where the nozzle is when the last bead is finished
     std::vector<std::uint32_t> selection;  ///< indices of its beads, ascending
     std::shared_ptr<const gcode::Toolpath> toolpath;
-    voxelize::Bounds part;            ///< mm, of its beads without what is printed beside the part
-    std::vector<glm::dvec3> outline;  ///< voxelize::partOutline(); empty unless PrintRequest::outline
+    voxelize::Bounds part;            ///< mm, world space, of its beads without what is printed beside the part
+    std::vector<glm::dvec3> outline;  ///< voxelize::partOutline(), world space; empty unless PrintRequest::outline
     std::string content;              ///< SHA-256 of the file, if asked for
     nlohmann::ordered_json report;    ///< path, counts and voxel sizes
     std::string line;                 ///< the same in short, for people

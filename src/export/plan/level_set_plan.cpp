@@ -17,7 +17,8 @@ LevelSetPlan::LevelSetPlan(const gcode::Toolpath& toolpath, LevelSetChoices choi
       selection_(selected()),
       bounds_(voxelize::boundsOf(toolpath, selection_)),
       lattice_(voxelize::latticeFor(choices_.print, toolpath, selection_, bounds_, choices_.interior)),
-      placement_(voxelize::placementOf(choices_.unit, choices_.up, choices_.origin, bounds_)),
+      lying_(toolpath.belt_angle == 0 ? bounds_ : voxelize::boundsOf(toolpath, selection_, toolpath.belt_angle)),
+      placement_(voxelize::placementOf(choices_.unit, choices_.up, choices_.origin, lying_, toolpath.belt_angle)),
       colors_(gcode::distinctColors(toolpath, selection_)) {
     if (choices_.attributes)
         attributes_ = *choices_.attributes;
@@ -60,7 +61,9 @@ Provenance LevelSetPlan::provenance(const std::string& source_file, const std::s
         provenance.filament_color = fmt::format("#{:02X}{:02X}{:02X}", red, green, blue);
     }
     const voxelize::Bounds part = voxelize::partBounds(toolpath_, purposes(), printed);
-    provenance.part = voxelize::placed(part, placement_);
+    provenance.part = voxelize::placed(
+        placement_.tilt == 0 ? part : voxelize::partBounds(toolpath_, purposes(), printed, placement_.tilt),
+        placement_);
     provenance.outline = voxelize::placed(voxelize::partOutline(toolpath_, purposes(), printed, part), placement_);
     provenance.deposit = toolpath_.deposit;
     provenance.culled = culls();

@@ -41,6 +41,8 @@ public:
     const LevelSetChoices& choices() const { return choices_; }
     const std::vector<std::uint32_t>& selection() const { return selection_; }
     const voxelize::Bounds& bounds() const { return bounds_; }
+    /// Of the print as it lies in the world, mm: turned on a belt.
+    const voxelize::Bounds& lyingBounds() const { return lying_; }
     const voxelize::Lattice& lattice() const { return lattice_; }
     const voxelize::Placement& placement() const { return placement_; }
     /// With LevelSetChoices::part_alone: how many of the selected beads that leaves out.
@@ -72,6 +74,7 @@ private:
     std::vector<std::uint32_t> selection_;
     voxelize::Bounds bounds_;
     voxelize::Lattice lattice_;
+    voxelize::Bounds lying_;
     voxelize::Placement placement_;
     std::vector<std::optional<gcode::Rgb>> colors_;
     std::vector<voxelize::Attribute> attributes_;

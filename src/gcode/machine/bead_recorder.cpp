@@ -30,6 +30,8 @@ void BeadRecorder::tag(const Tag& tag, std::uint32_t line) {
     switch (tag.kind) {
         case Tag::Kind::none:
         case Tag::Kind::filament_loaded:
+        case Tag::Kind::flush_start:
+        case Tag::Kind::flush_stop:
         case Tag::Kind::units_set:
             break;
         case Tag::Kind::feature:

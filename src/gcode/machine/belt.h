@@ -3,7 +3,8 @@
 // A program's x and y are in the gantry's plane, which makes `angle` with the belt; Z counts along the belt. As seen
 // from the print, the nozzle goes back along the belt as Z grows: by cos(angle) Z within the gantry's plane and by
 // sin(angle) Z away from it. Print space here is the gantry's: z is the distance from the first layer, across the
-// layers. The print lies on the belt as it does in the world when it is turned by `angle` about x.
+// layers. Turned by `angle` about x, which Toolpath::belt_angle hands on, the print lies as it does in the world: a
+// nozzle at (x, y, Z) is at (x, y cos(angle) - Z, y sin(angle)) there, so the belt is at height 0.
 // Sources: geometry; Creality's CR-30 and Blackbelt's Cura, whose Z grows by layer height / sin(angle) a layer.
 #pragma once
 

@@ -89,15 +89,19 @@ Machine::Machine(const Settings& settings, const ReadOptions& options, std::stri
 
 void Machine::refuse(std::string_view what) const { throw InputError(fmt::format("{}:{}: {}", name_, line_, what)); }
 
+void Machine::heed(const Tag& tag, const Line& line) {
+    if (tag.kind == Tag::Kind::object_start) objects_by_comment_ = true;
+    if (tag.kind == Tag::Kind::filament_loaded) loaded();
+    flushing_ = flushing_ ? tag.kind != Tag::Kind::flush_stop : tag.kind == Tag::Kind::flush_start;
+    if (tag.kind == Tag::Kind::units_set && line.count > 0 && line.commands[0].code == 21) recorder_.startPart();
+    recorder_.tag(tag, line_);
+}
+
 void Machine::run(const Line& line) {
     line_ = line.number;
     // The comment first: Slic3r writes the feature of a move behind the move.
     if (!line.comment.empty()) {
-        const Tag tag = parseTag(line.comment);
-        if (tag.kind == Tag::Kind::object_start) objects_by_comment_ = true;
-        if (tag.kind == Tag::Kind::filament_loaded) loaded();
-        if (tag.kind == Tag::Kind::units_set && line.count > 0 && line.commands[0].code == 21) recorder_.startPart();
-        if (tag.kind != Tag::Kind::none) recorder_.tag(tag, line_);
+        if (const Tag tag = parseTag(line.comment); tag.kind != Tag::Kind::none) heed(tag, line);
         if (moves_ != nullptr) tellElapsed(line.comment);
     }
     std::optional<std::size_t> workspace;

@@ -60,6 +60,8 @@ public:
     /// In words: the unit of E at the end, and its source.
     std::string extrusionRule() const;
     double filamentMm() const { return filament_mm_; }
+    /// mm that were pushed out in place between a slicer's marks of flushing.
+    double flushedMm() const { return flushed_; }
     double extrudedMm3() const { return extruded_mm3_; }
 
 private:
@@ -87,6 +89,7 @@ private:
     void selectTool(const Command& command);
     void useNumberedTool(double number);
     void useTool(std::size_t tool);
+    void heed(const Tag& tag, const Line& line);
     /// All filament that was drawn back is at the nozzle again.
     void loaded();
     void setOffsets(const Command& command);
@@ -196,6 +199,8 @@ private:
     const bool planar_;
     const bool simulates_flow_;
     std::optional<Belt> belt_;
+    bool flushing_ = false;
+    double flushed_ = 0;  // mm
     ExtraAxes extra_axes_;
     Carriages carriages_;
     std::map<std::string, Saved, std::less<>> saved_;

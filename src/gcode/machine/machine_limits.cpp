@@ -59,6 +59,10 @@ public:
         settings_.feedrate_per_minute = flavor_ == "reprap" || flavor_ == "reprapfirmware";
         settings_.rule_chosen = rule != CornerRule::automatic || printersRule() != CornerRule::automatic;
         limits.rule = rule != CornerRule::automatic ? rule : suggestedRule();
+        if (swaps_heads_) {  // as PrusaSlicer's GCodeProcessor has it, whatever the filaments' settings
+            settings_.load = {4.5};
+            settings_.unload.clear();
+        }
         if (printer_) usePrinter();
         if (limits.rule == CornerRule::corner_velocity) assumeKlipper();
         for (std::size_t n = 0; n < kLimitCount; ++n)
@@ -157,10 +161,14 @@ private:
             set(Limit::least_travel_speed, key, value);
         } else if (key == "xy_accel_mm_per_s_per_s") {  // KISSlicer's; its z_speed is what it asks for, no limit
             for (const Limit limit : {Limit::printing, Limit::travel}) set(limit, key, value);
+        } else if (key == "printer_notes") {
+            swaps_heads_ = value.find("PRINTER_VENDOR_PRUSA3D") != std::string_view::npos &&
+                           value.find("PRINTER_MODEL_XL") != std::string_view::npos;
         } else if (key == "filament_load_time") {
             settings_.load = numbersOf(value, 0, kLongestWait);
         } else if (key == "filament_unload_time") {
             settings_.unload = numbersOf(value, 0, kLongestWait);
+            settings_.parked = true;
         } else if (key == "machine_load_filament_time") {
             if (const auto time = number(value, 0, kLongestWait)) settings_.load = {*time};
         } else if (key == "machine_unload_filament_time") {
@@ -233,6 +241,7 @@ private:
     double most_printing_ = 0;
     double most_travel_ = 0;
     bool deviation_ = false;
+    bool swaps_heads_ = false;  // it is Prusa's XL
     const SlicerLimits& slicer_;
     const bool klipper_;
     const bool reprap_;

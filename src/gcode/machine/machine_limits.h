@@ -27,6 +27,7 @@ struct MachineSettings {
     std::vector<double> load;          ///< s by tool; may be short
     std::vector<double> unload;        ///< s by tool; may be short
     double change = 0;                 ///< s, of every change of tool
+    bool parked = false;               ///< filaments are, so that the first change unloads nothing (PrusaSlicer)
 };
 
 /// By what a slicer is known to plan its times, whatever the printer's own limits.

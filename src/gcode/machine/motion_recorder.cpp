@@ -261,7 +261,9 @@ void MotionRecorder::changeTool(std::size_t from, std::size_t to, std::uint32_t 
     };
     if (from == to) return;
     sink_.stop(Stop::tool_change, line);
-    sink_.wait(at(settings_.unload, from) + at(settings_.load, to) + settings_.change);
+    const bool loaded = changed_ || !settings_.parked;
+    changed_ = true;
+    sink_.wait((loaded ? at(settings_.unload, from) : 0.0) + at(settings_.load, to) + settings_.change);
 }
 
 void MotionRecorder::pressureAdvance(std::string_view what, double seconds, std::uint32_t line) {

@@ -89,6 +89,7 @@ private:
     Retraction retract_;
     Retraction recover_;
     bool retracted_ = false;
+    bool changed_ = false;  // the tool
 };
 
 }  // namespace stratum::gcode

@@ -46,7 +46,8 @@ struct ReadOptions {
     std::vector<std::optional<Rgb>> filament_colors;
     std::optional<double> layer_height;  ///< mm; used where it follows neither from tags nor from Z
     std::optional<int> plate;            ///< number of a program in a .gcode.3mf; needed only if it has several
-    /// Degrees between gantry and belt, 5 to 85; Z of the program moves the belt. None: a printer with a bed.
+    /// Degrees between gantry and belt, 5 to 85; Z of the program moves the belt. None: as the file states it, else a
+    /// printer with a bed.
     std::optional<double> belt_angle;
     bool planar = false;           ///< programs that turn the part or the nozzle (A, B, C) are read by x, y and z alone
     MotionSink* motion = nullptr;  ///< receives all motion; nullptr: motion is not recorded

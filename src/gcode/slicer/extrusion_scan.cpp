@@ -20,6 +20,7 @@ constexpr std::size_t kPairsInRises = 16;
 class Changes {
 public:
     void add(bool plan, double e) {
+        if (!plan && last_ && e > 0 && e < *last_) drawn_back_ = true;
         if (plan) {
             ++moves_;
             if (last_) {
@@ -38,14 +39,16 @@ public:
         return pairs_ >= kFewestPairs &&
                (falls_ * kFallsInChanges > rises_ + falls_ || rises_ * kPairsInRises <= pairs_);
     }
-    // Some number is not above the one before.
-    bool repeat() const { return rises_ < pairs_; }
+    // Some number is not above the one before, and none shows a retraction as absolute E writes it: back to less, in
+    // place, where an increment would push out.
+    bool repeat() const { return rises_ < pairs_ && !drawn_back_; }
 
 private:
     std::size_t moves_ = 0;
     std::size_t pairs_ = 0;  // of moves that follow each other
     std::size_t rises_ = 0;
     std::size_t falls_ = 0;
+    bool drawn_back_ = false;
     std::optional<double> last_;
 };
 

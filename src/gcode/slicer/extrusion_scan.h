@@ -23,7 +23,7 @@ struct ExtrusionScan {
     bool falls_back = false;
     /// M82 or M83 comes, but E moves before it: until then the machine is as it was switched on.
     bool mode_follows = false;
-    /// Some E of the moves that were read is not above the one before.
+    /// Some E of the moves that were read is not above the one before, and none is of a retraction in absolute E.
     bool repeats = false;
     /// The same after a G90 that follows M83, which by Marlin's rules makes E absolute again.
     bool relative_after_g90 = false;

@@ -57,6 +57,7 @@ constexpr std::array kFeatureTypes{
     Name{"bridge-wall", Feature::overhang_perimeter},
     // ideaMaker
     Name{"solid-fill", Feature::solid_infill},
+    Name{"top-surface", Feature::top_infill},
     Name{"gap-fill", Feature::gap_fill},
     Name{"bridge", Feature::bridge},
     Name{"raft", Feature::support},

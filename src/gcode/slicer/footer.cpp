@@ -57,7 +57,8 @@ std::size_t takeIndex(std::string_view& text) {
 }
 
 void setLengths(std::string_view text, double scale, Footer& footer) {
-    if (auto list = amounts(text, scale, kLengths); !list.empty()) footer = {.length = std::move(list), .volume = {}};
+    if (auto list = amounts(text, scale, kLengths); !list.empty())
+        footer = {.length = std::move(list), .volume = {}, .flow = {}};
 }
 
 void setAt(std::vector<double>& list, std::size_t tool, std::string_view text, std::span<const Unit> units) {
@@ -79,13 +80,14 @@ bool readFooter(std::string_view text, Footer& footer) {
         if (text.find("mm3") == std::string_view::npos)
             setLengths(text, 1000, footer);
         else
-            footer = {.length = {}, .volume = amounts(text, 1, kVolumes)};
+            footer = {.length = {}, .volume = amounts(text, 1, kVolumes), .flow = {}};
         return true;
     }
     if (takePrefix(text,
                    "total filament length [mm] :")) {  // BambuStudio lists those in use, so that the sum alone is sure
         const std::vector<double> list = amounts(text, 1, kLengths);
-        if (!list.empty()) footer = {.length = {std::accumulate(list.begin(), list.end(), 0.0)}, .volume = {}};
+        if (!list.empty())
+            footer = {.length = {std::accumulate(list.begin(), list.end(), 0.0)}, .volume = {}, .flow = {}};
         return true;
     }
     if (takePrefix(text, "filament_length_m =")) {  // Slic3r 1.3.1
@@ -101,6 +103,14 @@ bool readFooter(std::string_view text, Footer& footer) {
     if (takePrefix(text, "EXTRUDER_TRAIN.")) {
         const std::size_t tool = takeIndex(text);
         if (tool < kMostTools && takePrefix(text, ".MATERIAL.VOLUME_USED:")) setAt(footer.volume, tool, text, kVolumes);
+        return true;
+    }
+    if (takePrefix(text, "Filament Compensation #")) {
+        const std::size_t number = takeIndex(text);
+        if (number == 0 || number >= kMostTools || !takePrefix(text, ":")) return false;
+        const std::vector<double> percent = amounts(text, 0.01, {});
+        if (footer.flow.size() < number) footer.flow.resize(number);
+        if (!percent.empty()) footer.flow[number - 1] = percent[0];
         return true;
     }
     if (takePrefix(text, "Material#")) {

@@ -304,6 +304,8 @@ Settings readSettings(std::string_view bytes) {
             reader.markup(text);
     });
     Settings settings = reader.finish();
+    if (settings.slicer.starts_with("ideaMaker 4"))
+        for (double& flow : settings.footer.flow) flow *= flow;  // its statement multiplies twice
     settings.extrusion = scanExtrusion(bytes);
     if (!settings.relative_e.value_or(false)) settings.extrusion.relative_after_g90 = fallsBackAfterG90(bytes);
     settings.cut_short = findCut(bytes, settings.slicer);

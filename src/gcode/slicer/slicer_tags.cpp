@@ -49,11 +49,13 @@ Tag ofBegunLayer(std::string_view text) {
     return tag;
 }
 
-// Kiri:Moto: ";; --- layer 3 (0.200 @ 0.85) ---", height and z in the parentheses.
+// Kiri:Moto: ";; --- layer 3 (0.200 @ 0.85) ---", height and z in the parentheses; or without these.
 Tag ofKiriLayer(std::string_view text) {
-    const auto open = text.find('(');
-    if (open == std::string_view::npos || text.find('@') == std::string_view::npos) return {};
-    return layerChange("--- layer", positive(text.substr(open + 1), kMostHeight));
+    const auto height = text.find_first_not_of("0123456789");
+    if (height == std::string_view::npos || text.find('@') == std::string_view::npos) return {};
+    text = trim(text.substr(height));
+    take(text, "(");
+    return layerChange("--- layer", positive(text, kMostHeight));
 }
 
 // Simplify3D: "layer 3, Z = 0.600". "layer end" and prose are not. With several processes a layer is announced by each.
@@ -132,6 +134,8 @@ Tag parseTag(std::string_view comment) {
             break;
         case 'F':
             if (take(text, "FEATURE:")) return ofType(text);
+            if (text == "FLUSH_START") return {.kind = Tag::Kind::flush_start};
+            if (text == "FLUSH_END") return {.kind = Tag::Kind::flush_stop};
             break;
         case 'f':  // Simplify3D from 4.1 on
             if (take(text, "feature ")) {
@@ -142,6 +146,7 @@ Tag parseTag(std::string_view comment) {
             break;
         case 'H':
             if (take(text, "HEIGHT:")) return ofHeight(text);
+            if (take(text, "HEIGHT-BELT:")) return ofHeight(text);  // ideaMaker: across the layers; HEIGHT is Z's
             break;
         case 'L':
             if (take(text, "LAYER_CHANGE")) return layerChange("LAYER_CHANGE");

@@ -23,7 +23,9 @@ struct Tag {
         object_stop,
         color_change,
         filament_loaded,  ///< behind a change of tool: what was drawn back is at the nozzle again
-        units_set,        ///< the first line of the slicer's own behind the start program
+        flush_start,      ///< E in place pushes the old filament out (BambuStudio, OrcaSlicer)
+        flush_stop,
+        units_set,  ///< the first line of the slicer's own behind the start program
     };
     Kind kind = Kind::none;
     Feature feature = Feature::unknown;  ///< of Kind::feature; unknown if the name in `text` is unknown

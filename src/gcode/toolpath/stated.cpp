@@ -177,6 +177,10 @@ void StatedReader::sentence(std::string_view key, std::string_view value) {
     } else if (key == "machine_type" || key == "TARGET_MACHINE.NAME" || key == "Target" || key == "Printer" ||
                key == "Machine Name") {
         if (!value.empty()) facts_.printer = value;
+    } else if (key == "Belt Printer" || key == "Bed type") {
+        facts_.belt = facts_.belt || value == "1" || value == "belt";
+    } else if (key == "Belt Gantry Angle") {
+        facts_.belt_angle = positiveNumber(value, 90);
     } else if (key == "Material Type") {
         setMaterial(0, value);
     } else if (key == "ExtruderParams[0] Nozzle Diameter") {

@@ -4,7 +4,8 @@
 // "total filament used [g] =", "model printing time: ...; total estimated time:", their settings); Cura's ";TIME:" and
 // Griffin headers ("PRINT.TIME:"); Simplify3D ("Build time:", "Plastic weight:", its settings with commas:
 // filamentDensities, filamentPricesPerKg, strokeXoverride); ideaMaker
-// ("Print Time:"); KISSlicer ("Estimated Build Time: 332.83 minutes"); Kiri:Moto ("--- print time: 806s ---");
+// ("Print Time:", "Belt Printer: 1", "Belt Gantry Angle: 45"); KISSlicer ("Estimated Build Time: 332.83 minutes");
+// Kiri:Moto ("--- print time: 806s ---", "Bed type: belt");
 // FlashPrint ("machine_type:", "right_extruder_material:") and the header of its .gx; Snapmaker Luban
 // ("estimated_time(s):", "Extruder 0 Material:"); Creality Print ("Machine Name:", "Material Type:").
 #pragma once
@@ -32,6 +33,8 @@ struct StatedFacts {
     std::optional<double> first_layer_height;  ///< mm
     std::vector<std::array<double, 2>> bed;    ///< mm, corners of the printable area; empty, or at least three
     std::vector<std::vector<std::array<double, 2>>> excluded;  ///< mm, corners of areas of the bed that stay free
+    bool belt = false;                                         ///< it is a printer with a belt
+    std::optional<double> belt_angle;                          ///< degrees between its gantry and the belt (ideaMaker)
     bool programs_left_out = false;  ///< `seconds` is without the user's start and end programs (Cura)
 
     bool empty() const;

@@ -1,6 +1,7 @@
 // The seam between reading G-code and everything after it: beads as plain data.
 //
-// Print space: millimetres, x and y in the bed plane, z up, as the G-code has them. One bead is one extruding move.
+// Print space: millimetres, x and y in the bed plane, z up, as the G-code has them; of a belt printer in the plane of
+// its gantry, z across it. One bead is one extruding move.
 // Sources: Marlin G0-G3 (marlinfw.org/docs/gcode), Slic3r's flow math for the stadium cross-section.
 #pragma once
 
@@ -131,6 +132,7 @@ struct Toolpath {
     double layer_height = 0;          ///< mm, nominal, from the file's settings; 0 if unknown
     DepositModel deposit;             ///< as asked for: ReadOptions::deposit
     std::uint32_t layer_count = 0;
+    double belt_angle = 0;  ///< degrees: turned by it about x the print lies as in the world; 0 but on a belt (belt.h)
     /// By tool, from the file's settings; empty for a tool without one; may be short. Use bead_colors.h.
     std::vector<std::optional<Rgb>> tool_colors;
     std::vector<std::uint8_t> palette_tools;  ///< those of kCategoryColors, for want of a statement: colorUnstated()
@@ -148,7 +150,8 @@ struct Toolpath {
     std::string cut_short;        ///< why the program seems truncated; empty if it doesn't
     double filament_mm = 0;       ///< positive E of the beads as the file counts it, in mm of filament
     double prime_mm = 0;          ///< the part of it that is laid before the first layer: prime lines (layer 0)
-    double extruded_mm3 = 0;      ///< the same as volume, times the flow factor (M221): the expected sum of all beads
+    double flushed_mm = 0;    ///< pushed out in place while filaments change, in no bead; BambuStudio's sums have it
+    double extruded_mm3 = 0;  ///< the same as volume, times the flow factor (M221): the expected sum of all beads
 
     const Run& runOf(const Bead& bead) const { return runs[bead.run]; }
     /// 1-based line in the source; saturates at 2147483647.

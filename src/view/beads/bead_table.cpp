@@ -44,6 +44,7 @@ std::vector<std::uint32_t> wordsOf(const gcode::Toolpath& toolpath) {
 
 BeadTable::BeadTable(std::shared_ptr<const gcode::Toolpath> toolpath) : toolpath_(std::move(toolpath)) {
     const gcode::Toolpath& print = *toolpath_;
+    if (print.belt_angle != 0) throw InputError("the layers of a print on a belt lean; the server alone draws them");
     if (print.runs.size() > kMaxRuns)
         throw InputError(
             fmt::format("the print changes its features {} times; at most {} fit", print.runs.size(), kMaxRuns));

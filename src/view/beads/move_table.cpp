@@ -91,7 +91,7 @@ private:
 
 std::vector<MoveRecord> movesOf(std::string_view bytes, std::string_view name, gcode::ReadOptions options,
                                 const gcode::Toolpath& shown) {
-    if (options.belt_angle) throw InputError("travels of printers with a belt are not drawn");
+    if (shown.belt_angle != 0) throw InputError("travels of printers with a belt are not drawn");
     if (options.deposit.flow_lag || options.deposit.sag > 0)
         throw InputError("travels are not drawn beside beads that lag or sag: start the viewer without these options");
     MoveCollector collector(shown);

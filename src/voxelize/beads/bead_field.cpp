@@ -122,14 +122,38 @@ Bounds BeadField::bounds() const {
     return box;
 }
 
-Bounds boundsOf(const gcode::Toolpath& toolpath, std::span<const std::uint32_t> beads) {
+Bounds BeadField::bounds(double tilt) const {
+    Bounds box = bounds();
+    if (tilt == 0) return box;
+    double plan_min[2];
+    double plan_max[2];
+    path_.bounds(plan_min, plan_max);
+    const double flat = std::max(flats_.start, flats_.end);
+    const double rise = rod_ ? 1 : 1 / cosine_;
+    // How far the solid reaches along (0, y, z), a unit vector: the path, then the section around it.
+    const auto reach = [&](double y, double z) {
+        const double path = !path_.straight() ? y * (y > 0 ? plan_max[1] : plan_min[1]) + std::max(z * zc0_, z * zc1_)
+                                              : std::max(y * y0_ + z * zc0_, y * (y0_ + dy_) + z * zc1_);
+        return path + std::abs(y) * flat + radius_ * std::hypot(y, z * rise) + std::abs(z) * half_side_ * rise +
+               (z < 0 ? -z * reach_ * rise : 0.0);
+    };
+    const double cosine = std::cos(tilt * std::numbers::pi / 180);
+    const double sine = std::sin(tilt * std::numbers::pi / 180);
+    box.min[1] = -reach(-cosine, sine);
+    box.max[1] = reach(cosine, -sine);
+    box.min[2] = -reach(-sine, -cosine);
+    box.max[2] = reach(sine, cosine);
+    return box;
+}
+
+Bounds boundsOf(const gcode::Toolpath& toolpath, std::span<const std::uint32_t> beads, double tilt) {
     constexpr std::size_t kGrain = 8192;
     Bounds all;
     std::mutex mutex;
     parallelFor(beads.size(), kGrain, [&](std::size_t first, std::size_t last) {
         Bounds part;
         for (const std::uint32_t bead : beads.subspan(first, last - first))
-            part.include(BeadField(toolpath, toolpath.beads[bead]).bounds());
+            part.include(BeadField(toolpath, toolpath.beads[bead]).bounds(tilt));
         const std::scoped_lock lock(mutex);
         all.include(part);
     });

@@ -79,6 +79,8 @@ public:
 
     /// Box of the solid, mm.
     Bounds bounds() const;
+    /// Box of the solid turned by `tilt` degrees about x, mm: as tight as bounds(), but of helices.
+    Bounds bounds(double tilt) const;
 
     const gcode::PlanPath& path() const { return path_; }
     /// Distance in the plan to the flat, mm: negative over it.
@@ -106,7 +108,7 @@ private:
     bool level_ = true, rod_ = false;
 };
 
-/// Box of the solid of all listed beads, mm. There must be one. Parallel.
-Bounds boundsOf(const gcode::Toolpath& toolpath, std::span<const std::uint32_t> beads);
+/// Box of the solid of all listed beads, mm, turned by `tilt` degrees about x. There must be one. Parallel.
+Bounds boundsOf(const gcode::Toolpath& toolpath, std::span<const std::uint32_t> beads, double tilt = 0);
 
 }  // namespace stratum::voxelize

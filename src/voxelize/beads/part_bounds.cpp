@@ -7,15 +7,15 @@
 namespace stratum::voxelize {
 
 Bounds partBounds(const gcode::Toolpath& toolpath, std::span<const gcode::Purpose> purposes,
-                  std::span<const std::uint32_t> selection) {
+                  std::span<const std::uint32_t> selection, double tilt) {
     const std::vector<std::uint32_t> part = gcode::beadsUpTo(gcode::Purpose::support, purposes, selection);
-    Bounds bounds = boundsOf(toolpath, part);
+    Bounds bounds = boundsOf(toolpath, part, tilt);
     std::vector<std::uint32_t> brim;
     std::copy_if(selection.begin(), selection.end(), std::back_inserter(brim),
                  [&](std::uint32_t bead) { return purposes[bead] == gcode::Purpose::brim; });
     // All are taken where nothing but a brim and what is beside the part is selected.
     if (brim.empty() || part.size() == selection.size()) return bounds;
-    const Bounds around = boundsOf(toolpath, brim);
+    const Bounds around = boundsOf(toolpath, brim, tilt);
     for (int axis = 0; axis < 2; ++axis) {
         bounds.min[axis] = std::min(bounds.min[axis], std::max(around.min[axis], bounds.min[axis] - kBrimReach));
         bounds.max[axis] = std::max(bounds.max[axis], std::min(around.max[axis], bounds.max[axis] + kBrimReach));

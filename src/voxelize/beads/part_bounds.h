@@ -15,13 +15,14 @@ namespace stratum::voxelize {
 inline constexpr double kBrimReach = 10;
 
 /// Bounds of the selected beads, mm, without what is printed beside the part (gcode::Purpose); supports count, a brim
-/// only within kBrimReach. If nothing else is selected: bounds of all selected beads.
+/// only within kBrimReach. If nothing else is selected: bounds of all selected beads. Of the print turned by `tilt`
+/// degrees about x.
 /// @param purposes   gcode::purposesOf() of the toolpath
 /// @param selection  indices into `toolpath.beads`, at least one
 Bounds partBounds(const gcode::Toolpath& toolpath, std::span<const gcode::Purpose> purposes,
-                  std::span<const std::uint32_t> selection);
+                  std::span<const std::uint32_t> selection, double tilt = 0);
 
-/// The same box after a placement, world units.
+/// The same box, which is that of the print turned by placement.tilt, after a placement, world units.
 Bounds placed(const Bounds& bounds, const Placement& placement);
 
 }  // namespace stratum::voxelize

@@ -142,9 +142,9 @@ std::vector<std::array<double, 3>> partOutline(const gcode::Toolpath& toolpath,
 
 std::vector<std::array<double, 3>> placed(std::vector<std::array<double, 3>> outline, const Placement& placement) {
     for (auto& point : outline) {
-        for (std::size_t axis = 0; axis < 3; ++axis)
-            point[axis] = (point[axis] + placement.offset[axis]) * placement.unit;
-        if (placement.up_y) point = {point[0], point[2], -point[1]};
+        point = worldOf(point, placement);
+        if (placement.tilt == 0) continue;
+        for (double& coordinate : point) coordinate = double{static_cast<float>(coordinate)};
     }
     return outline;
 }

@@ -24,7 +24,7 @@ std::vector<std::array<double, 3>> partOutline(const gcode::Toolpath& toolpath,
                                                std::span<const gcode::Purpose> purposes,
                                                std::span<const std::uint32_t> selection, const Bounds& bounds);
 
-/// The same points after a placement, world units.
+/// The same points after a placement, world units; of a tilted one in floats, as in files.
 std::vector<std::array<double, 3>> placed(std::vector<std::array<double, 3>> outline, const Placement& placement);
 
 /// Points as text, "x y z x y z ...", for metadata; and back. No points for text that is anything else, is not finite,

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 
 namespace stratum::gcode {
 namespace {
@@ -59,6 +60,39 @@ TEST(Belt, APrinterWithABeltIsSaid) {
     ReadOptions options;
     options.belt_angle = 45;
     EXPECT_EQ(warningCount(readProgram(program, options), "belt"), 0U);
+    EXPECT_EQ(warningCount(readProgram("; Bed type: belt\nM83\nG1 Z.2\nG1 X9 E1\n"), "prints on a belt"), 1U);
+}
+
+// ideaMaker's HEIGHT is how far the belt goes, HEIGHT-BELT how thick the layer is.
+TEST(Belt, HeightsAreAcrossTheLayers) {
+    const Toolpath toolpath = readProgram(
+        ";Belt Printer: 1\n;Belt Gantry Angle: 45\nM83\n"
+        ";LAYER:0\n;HEIGHT:0.800\n;HEIGHT-BELT:0.566\nG1 Z.8\n;TYPE:TOP-SURFACE\nG1 X9 E1\n"
+        ";LAYER:1\n;HEIGHT:0.566\n;HEIGHT-BELT:0.400\nG1 Z1.366\nG1 X0 E1\n");
+    ASSERT_EQ(toolpath.beads.size(), 2U);
+    EXPECT_NEAR(static_cast<double>(toolpath.runOf(toolpath.beads[0]).height), 0.566, 1e-6);
+    EXPECT_NEAR(static_cast<double>(toolpath.runOf(toolpath.beads[1]).height), 0.4, 1e-6);
+    EXPECT_NEAR(toolpath.beads[1].z1, 0.966, 1e-3);
+    EXPECT_EQ(toolpath.runOf(toolpath.beads[0]).feature, Feature::top_infill);
+    EXPECT_EQ(warningCount(toolpath, "unknown feature"), 0U);
+}
+
+// ideaMaker states the angle.
+TEST(Belt, AStatedAngleIsTaken) {
+    const std::string stated = ";Belt Printer: 1\n;Belt Gantry Angle: 35\n";
+    const std::string program = "M83\nG1 Z.2\nG1 X9 E1\n";
+    const Toolpath toolpath = readProgram(stated + program);
+    EXPECT_EQ(toolpath.belt_angle, 35);
+    EXPECT_EQ(warningCount(toolpath, "belt"), 0U);
+    EXPECT_NEAR(toolpath.beads.at(0).z1, 0.2 * std::sin(35 * std::numbers::pi / 180), 1e-9);
+    ReadOptions options;
+    options.belt_angle = 45;
+    EXPECT_EQ(readProgram(stated + program, options).belt_angle, 45);
+    EXPECT_EQ(readProgram(program).belt_angle, 0);
+    const Toolpath upright = readProgram(";Belt Printer: 1\n;Belt Gantry Angle: 90\n" + program);
+    EXPECT_EQ(upright.belt_angle, 0);
+    EXPECT_EQ(warningCount(upright, "prints on a belt"), 1U);
+    EXPECT_EQ(readProgram(";Belt Printer: 0\n;Belt Gantry Angle: 45\n" + program).belt_angle, 0);
 }
 
 }  // namespace

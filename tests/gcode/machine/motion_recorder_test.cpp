@@ -217,9 +217,16 @@ TEST(MotionRecorder, VolumesBecomeFilament) {
 
 TEST(MotionRecorder, ChangesOfToolTakeWhatTheSettingsSay) {
     Log log;
-    record("M83\nT0\nG1 X1 E1 F600\nT1\nG1 X2 E1\n; filament_load_time = 10,20\n; filament_unload_time = 3,4\n", log);
-    ASSERT_EQ(log.waits.size(), 1U);
-    EXPECT_EQ(log.waits[0], 23);
+    // Nothing is loaded before the first change, as PrusaSlicer's GCodeProcessor has it.
+    const std::string program = "M83\nT0\nG1 X1 E1 F600\nT1\nG1 X2 E1\nT0\nG1 X3 E1\n";
+    record(program + "; filament_load_time = 10,20\n; filament_unload_time = 3,4\n", log);
+    EXPECT_EQ(log.waits, (std::vector<double>{20, 14}));
+    Log heads;
+    record(program +
+               "; filament_load_time = 10,20\n; filament_unload_time = 3,4\n"
+               "; printer_notes = PRINTER_VENDOR_PRUSA3D\\nPRINTER_MODEL_XLIS\n",
+           heads);
+    EXPECT_EQ(heads.waits, (std::vector<double>{4.5, 4.5}));
 }
 
 TEST(MachineSettings, AreReadFromTrailers) {

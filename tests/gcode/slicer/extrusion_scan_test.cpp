@@ -99,6 +99,8 @@ TEST(ExtrusionScan, BeforeALateMode) {
     const std::string program =
         "G92 E0\nG1 X1 Z.2 E2\nG1 X9 E5\nG92 E0\nM83\nG1 X20 E1\n; use_relative_e_distances = 1\n";
     EXPECT_NEAR(readProgram(program).filament_mm, 6, 1e-9);
+    // A retraction in place and back, in absolute numbers.
+    EXPECT_FALSE(scanExtrusion("G1 E25\nG1 E23\nG1 E25\nG1 X1 E25\nG1 X9 E25\nM83\n").repeats);
     const Toolpath repeats = readProgram("G1 X1 Z.2 E5\nG1 X9 E5\nM83\nG1 X20 E1\n");
     EXPECT_NEAR(repeats.filament_mm, 11, 1e-9);
     EXPECT_EQ(warningCount(repeats, "the first M82 or M83 comes late"), 1U);

@@ -1,5 +1,7 @@
 #include "gcode/slicer/footer.h"
 
+#include "gcode/reader.h"
+
 #include <gtest/gtest.h>
 
 #include <vector>
@@ -23,6 +25,26 @@ TEST(Footer, OfSeveralSlicers) {
     EXPECT_EQ(footerOf("Filament length: 2706.2 mm (2.71 m)").length, (List{2706.2}));
     EXPECT_EQ(footerOf("Material#2 Used: 3.5").length, (List{0, 3.5}));
     EXPECT_EQ(footerOf("--- filament used: 225.03 mm ---").length, (List{225.03}));
+}
+
+// ideaMaker multiplies by its compensation, and says M221.
+TEST(Footer, OfWhatIsMultipliedBesideE) {
+    Footer footer;
+    EXPECT_TRUE(readFooter("Filament Compensation #2: 98.000", footer));
+    EXPECT_TRUE(readFooter("Material#1 Used: 100", footer));
+    EXPECT_TRUE(readFooter("Material#2 Used: 9.8", footer));
+    EXPECT_EQ(footer.flow, (List{0, 0.98}));
+    EXPECT_EQ(footer.length, (List{100, 9.8}));
+    const Toolpath toolpath = readToolpath(
+        ";Filament Compensation #1: 94.00\nM221 T0 S94.00\nM83\nG1 Z.3\nG1 X10 E1\n;Material#1 Used: 0.94\n", "a");
+    EXPECT_NEAR(toolpath.footer_mm, 1, 1e-12);
+    EXPECT_NEAR(
+        readToolpath(";Sliced by ideaMaker 4.2.0.5250, 2021-09-03\n;Filament Compensation #1: 94.00\nM83\nG1 Z.3\n"
+                     "G1 X10 E1\n;Material#1 Used: 0.8836\n",
+                     "a")
+            .footer_mm,
+        1, 1e-12);
+    EXPECT_NEAR(toolpath.filament_mm, 1, 1e-12);
 }
 
 TEST(Footer, OfHeaders) {

@@ -75,6 +75,8 @@ TEST(SlicerTags, Layers) {
                                 "; --- layer 3 (0.200 @ 0.85) ---"})
         EXPECT_EQ(parseTag(comment).kind, Kind::layer_change) << comment;
     EXPECT_EQ(parseTag("; --- layer 0 (0.250 @ 0.255) ---").height, 0.25);
+    EXPECT_EQ(parseTag("; --- layer 17 0.25 @ 4.035 ---").height, 0.25);
+    EXPECT_EQ(parseTag("; --- layer 17 ---").kind, Tag::Kind::none);
     for (const auto* comment : {"LAYER_COUNT:25", "BEFORE_LAYER_CHANGE", "AFTER_LAYER_CHANGE", " layer end",
                                 " layer_height = 0.2", " layer 3", "Z:0.2", "Layer height: 0.2"})
         EXPECT_EQ(parseTag(comment).kind, Kind::none) << comment;

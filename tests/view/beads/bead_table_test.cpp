@@ -26,6 +26,14 @@ std::vector<std::uint32_t> allOf(const BeadTable& table, std::size_t count) {
     return words;
 }
 
+TEST(BeadTable, IsOfLevelLayersAlone) {
+    gcode::ReadOptions belt;
+    belt.belt_angle = 45;
+    EXPECT_THROW(BeadTable(std::make_shared<const gcode::Toolpath>(
+                     gcode::readToolpath("M83\nG1 Z.3\nG1 X10 E1\n", "belt.gcode", belt))),
+                 InputError);
+}
+
 // What the page reads of the table is the bead, to half a step.
 TEST(BeadTable, HoldsTheBeads) {
     for (const char* name : {"tile.gcode", "tile_arcs.gcode", "vase.gcode"}) {
