@@ -161,11 +161,9 @@ class SettledOfSlicers : public testing::TestWithParam<const char*> {};
 
 INSTANTIATE_TEST_SUITE_P(Prints, SettledOfSlicers,
                          testing::Values("preprocess_cancellation-cura.gcode", "preprocess_cancellation-slic3r.gcode",
-                                         "preprocess_cancellation-superslicer.gcode",
-                                         "libbgcode-mini_cube_a.gcode",
+                                         "preprocess_cancellation-superslicer.gcode", "libbgcode-mini_cube_a.gcode",
                                          "preprocess_cancellation-kirimoto.gcode", "slicercompare-bambu_plate_1.gcode",
-                                         "slicer-meta-orca_twocolors.gcode.3mf",
-                                         "filaswitch-mc_testmodel1_S3D.gcode"),
+                                         "slicer-meta-orca_twocolors.gcode.3mf", "filaswitch-mc_testmodel1_S3D.gcode"),
                          [](const auto& print) {
                              std::string name = print.param;
                              std::replace_if(
