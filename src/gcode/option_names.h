@@ -14,14 +14,15 @@ inline constexpr Names<Firmware, 4> kFirmwares = {{{"auto", Firmware::automatic}
                                                    {"klipper", Firmware::klipper},
                                                    {"reprap", Firmware::reprap}}};
 
-inline constexpr Names<CornerRule, 8> kCornerRules = {{{"auto", CornerRule::automatic},
+inline constexpr Names<CornerRule, 9> kCornerRules = {{{"auto", CornerRule::automatic},
                                                        {"jerk", CornerRule::jerk},
                                                        {"slicer-jerk", CornerRule::slicer_jerk},
                                                        {"plan-jerk", CornerRule::plan_jerk},
                                                        {"junction-deviation", CornerRule::junction_deviation},
                                                        {"corner-velocity", CornerRule::corner_velocity},
                                                        {"marlin-jerk", CornerRule::marlin_jerk},
-                                                       {"reprap-jerk", CornerRule::reprap_jerk}}};
+                                                       {"reprap-jerk", CornerRule::reprap_jerk},
+                                                       {"programmed", CornerRule::programmed}}};
 
 inline constexpr Names<DepositModel::Beads, 3> kBeadModels = {{{"capsule", DepositModel::Beads::capsule},
                                                                {"grooves", DepositModel::Beads::grooves},

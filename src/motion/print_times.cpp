@@ -4,6 +4,8 @@
 #include "gcode/summary.h"
 #include "motion/clock_fit.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <optional>
 
@@ -81,23 +83,43 @@ void addUp(const gcode::Toolpath& toolpath, PrintTimes& times) {
     times.layers[layer] += times.after_model;
 }
 
+// The rule that a slicer estimates by, and what it multiplies by; automatic: the one that was planned by.
+struct Estimate {
+    CornerRule rule = CornerRule::automatic;
+    double factor = 1;
+};
+
+Estimate estimateOf(const PrintTimes& times, const gcode::Toolpath& toolpath) {
+    if (toolpath.slicer.starts_with("Simplify3D")) return {CornerRule::programmed};
+    if (toolpath.slicer.starts_with("Kiri:Moto")) return {CornerRule::programmed, 1.5};
+    const bool states_jerk = times.limits[ofAxis(gcode::Limit::jerk, 0)].kind == gcode::LimitOrigin::Kind::setting;
+    if (times.limits.rule != CornerRule::corner_velocity || !states_jerk) return {};
+    return {toolpath.stated.programs_left_out ? CornerRule::plan_jerk : CornerRule::slicer_jerk};
+}
+
 }  // namespace
 
 std::string_view ruleName(CornerRule rule) { return gcode::kCornerRules[static_cast<std::size_t>(rule)].first; }
 
 std::optional<PrintTimes> estimatedTimes(std::string_view bytes, std::string_view name,
                                          const gcode::ReadOptions& options, const PrintTimes& times,
-                                         const gcode::StatedFacts& facts) {
-    using gcode::Limit;
-    const bool chosen = options.corner_rule != CornerRule::automatic || options.printer;
-    const bool states_jerk = times.limits[ofAxis(Limit::jerk, 0)].kind == gcode::LimitOrigin::Kind::setting;
-    if (chosen || times.limits.rule != CornerRule::corner_velocity || !states_jerk || !facts.seconds)
-        return std::nullopt;
+                                         const gcode::Toolpath& toolpath) {
+    const gcode::StatedFacts& facts = toolpath.stated;
+    if (options.corner_rule != CornerRule::automatic || options.printer || !facts.seconds) return std::nullopt;
+    const auto [rule, factor] = estimateOf(times, toolpath);
+    if (rule == CornerRule::automatic) return std::nullopt;
     gcode::ReadOptions read = options;
-    read.corner_rule = facts.programs_left_out ? CornerRule::plan_jerk : CornerRule::slicer_jerk;
+    read.corner_rule = rule;
     read.progress = {};
     PrintTimes estimate;
     readTimedToolpath(bytes, name, read, estimate);
+    if (factor == 1) return estimate;
+    for (double* seconds : {&estimate.total, &estimate.travel, &estimate.retraction, &estimate.waiting,
+                            &estimate.before_model, &estimate.after_model})
+        *seconds *= factor;
+    for (double& seconds : estimate.features) seconds *= factor;
+    for (double& seconds : estimate.layers) seconds *= factor;
+    estimate.rule += fmt::format(" times {}", factor);
     return estimate;
 }
 

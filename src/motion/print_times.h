@@ -25,17 +25,17 @@ struct PrintTimes {
     double after_model = 0;                               ///< behind the last bead: the end program
     std::array<double, gcode::kFeatureCount> features{};  ///< of beads
     std::vector<double> layers;  ///< by layer number; travel before a bead belongs to its layer, the rest to the last
-    std::string rule;            ///< a ruleName()
+    std::string rule;            ///< a ruleName(), or what it is multiplied by
     gcode::LimitOrigins limits;  ///< those that were planned with, before the program's first command
 };
 
 /// The times by the rule that the slicer estimated by, where the firmware plans by another one: PrusaSlicer and its
-/// kin, and Cura, estimate for Klipper as for any printer. `times` and `facts` are what readTimedToolpath() found with
-/// these options. nullopt: no other rule, one that was asked for, a printer that was given, or no stated time to
-/// compare with. Reads the program again.
+/// kin, and Cura, estimate for Klipper as for any printer, Simplify3D and Kiri:Moto for any without acceleration.
+/// `times` and `toolpath` are what readTimedToolpath() found with these options. nullopt: no other rule, one that was
+/// asked for, a printer that was given, or no stated time to compare with. Reads the program again.
 std::optional<PrintTimes> estimatedTimes(std::string_view bytes, std::string_view name,
                                          const gcode::ReadOptions& options, const PrintTimes& times,
-                                         const gcode::StatedFacts& facts);
+                                         const gcode::Toolpath& toolpath);
 
 /// What a file states of its time, and what is planned of the same part of the program.
 struct StatedTime {

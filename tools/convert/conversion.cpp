@@ -119,7 +119,7 @@ void Conversion::read() {
     toolpath_ = std::move(print.toolpath);
     times_ = std::move(print.times);
     if (times_ && (o_.summary || stats()))
-        estimate_ = motion::estimatedTimes(file_.bytes(), file_.name(), read, *times_, toolpath_.stated);
+        estimate_ = motion::estimatedTimes(file_.bytes(), file_.name(), read, *times_, toolpath_);
     flow_ = print.flow;
     sag_ = print.sag;
     seconds_.parse = watch_.lap();

@@ -111,6 +111,7 @@ bool isUsed(Limit limit, const LimitOrigins& origins) {
     if ((limit == Limit::wait_after_m400 || isOf(limit, Limit::steps_per_mm)) && origin.value == 0 &&
         origin.changes == 0)
         return false;
+    if (rule == CornerRule::programmed) return false;
     if (rule == CornerRule::corner_velocity) return !factsOf(limit).klipper.empty();
     if (isOf(limit, Limit::steps_per_mm))
         return rule == CornerRule::junction_deviation || rule == CornerRule::marlin_jerk;

@@ -26,6 +26,7 @@ enum class CornerRule : std::uint8_t {
     corner_velocity,     ///< Klipper's square corner velocity
     marlin_jerk,         ///< a jump of speed by axis as Marlin 2 has it ("classic jerk")
     reprap_jerk,         ///< RepRapFirmware 3's jump of speed by axis (M566)
+    programmed,          ///< no acceleration: Simplify3D's and Kiri:Moto's estimates
 };
 
 /// The firmware whose way of dividing arcs into straight pieces is known.
