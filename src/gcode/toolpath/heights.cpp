@@ -21,7 +21,12 @@ constexpr double kLevelShare = 0.3;
 constexpr double kBedShare = 0.1;
 
 // A thread that goes up rather than along.
-bool isStrut(const Bead& bead) { return bead.z1 - bead.z0 > std::hypot(bead.x1 - bead.x0, bead.y1 - bead.y0); }
+bool isStrut(const Bead& bead) {
+    const double rise = bead.z1 - bead.z0;
+    const double x = bead.x1 - bead.x0;
+    const double y = bead.y1 - bead.y0;
+    return rise > 0 && rise * rise > x * x + y * y;
+}
 
 // z levels of level beads in micrometres, ascending. Prime lines (layer 0) are no levels of the part. A strut holds
 // what is laid on its top: its level is `nominal` mm below that.
