@@ -142,7 +142,8 @@ TEST(BareBed, NoPixelIsBelowZero) {
     options.height = 36;
     options.spp = 2;
     std::size_t dark = 0;
-    for (const shade::Pixel& pixel : shade::render(ball, scene, options).film.pixels()) {
+    const shade::Film film = shade::render(ball, scene, options).film;
+    for (const shade::Pixel& pixel : film.pixels()) {
         EXPECT_GE(std::min({pixel.rgb.r, pixel.rgb.g, pixel.rgb.b}), 0.0f);
         dark += shade::luminance(pixel.rgb) == 0.0f;
     }
