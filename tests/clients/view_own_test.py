@@ -36,7 +36,7 @@ const load = async (source) => {
 (async () => {
   const reference = await load(window.vdbviewFinal);
   const image = new Image();
-  image.src = window.vdbviewDrawn();
+  image.src = await window.vdbviewDrawn();
   await image.decode();
   const own = await load(image);
   const { width, height } = reference;

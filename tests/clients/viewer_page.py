@@ -15,8 +15,10 @@ from run_tools import BIN
 COLORS = """
 const [places, wanted, done] = arguments;
 const image = new Image();
-image.src = window.vdbviewDrawn();
-image.decode().then(() => {
+window.vdbviewDrawn().then((url) => {
+  image.src = url;
+  return image.decode();
+}).then(() => {
   const context = new OffscreenCanvas(image.width, image.height).getContext("2d");
   context.drawImage(image, 0, 0);
   done(places.map(([x, y]) => {

@@ -439,8 +439,9 @@ new ResizeObserver(() => {
     if (String(pixels()) !== String(shownSize)) ask(false);
   }, 120);
 }).observe(picture);
-/** For tests: the browser's own picture of the view, as a PNG. */
-window.vdbviewDrawn = () => {
-  drawOwn(false);
-  return byId("beads").toDataURL();
-};
+/** For tests: the browser's own picture of the view with all its beads, as a promise of a PNG. */
+window.vdbviewDrawn = () =>
+  new Promise((done) => {
+    own.addEventListener("complete", () => done(byId("beads").toDataURL()), { once: true });
+    drawOwn(false);
+  });
