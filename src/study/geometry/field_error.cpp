@@ -2,8 +2,10 @@
 
 #include "study/geometry/handmade.h"
 #include "voxelize/beads/bead_field.h"
+#include "voxelize/beads/placement.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <vector>
@@ -30,13 +32,11 @@ double largestFieldError(const gcode::Toolpath& toolpath, const voxelize::Lattic
             if (number++ % stride != 0) continue;
             const openvdb::Coord at = leaf->offsetToGlobalCoord(v);
             // Sample places as Lattice defines them, not through the grid's transform: that is under test, too.
-            double p[3] = {at.x() * lattice.voxel_size, at.y() * lattice.voxel_size,
-                           at.z() * lattice.voxel_size + lattice.origin_z};
-            if (placement.up_y) {
+            std::array<double, 3> p{at.x() * lattice.voxel_size, at.y() * lattice.voxel_size,
+                                    at.z() * lattice.voxel_size + lattice.origin_z};
+            if (placement.up_y || placement.tilt != 0) {
                 const openvdb::Vec3d world = grid->indexToWorld(at);
-                p[0] = world[0] / placement.unit - placement.offset[0];
-                p[1] = -world[2] / placement.unit - placement.offset[1];
-                p[2] = world[1] / placement.unit - placement.offset[2];
+                p = voxelize::printOf({world[0], world[1], world[2]}, placement);
             }
             double exact = background;
             for (const voxelize::BeadField& field : fields) exact = std::min(exact, field.distance(p[0], p[1], p[2]));

@@ -12,8 +12,9 @@
 //      is welded to it from above.
 //   2. Each node's surplus is given to the nodes within kNear cells, in proportion to a tent and to what they can gain.
 //   3. What is left raises the open tops within kUp cells, by Layer::most_rise at most.
-//   4. What is left then goes to what can gain within kFar cells. The rest moves up at its node, from layer to welded
-//      layer, into what can gain there, until it raises an open top. What that cannot take has no place.
+//   4. What is left then goes to what can gain within kFar cells, and what a node holds more than it was fed is taken
+//      back from there. The rest moves up at its node, from layer to welded layer, into what can gain there, until it
+//      raises an open top. What that cannot take has no place.
 //   5. At each node the swell is the one that gains what the node was given, and the rise is the volume over the area.
 // The same tents weigh gain and area and interpolate swell and rise, so the volume is kept to the second order of their
 // changes.

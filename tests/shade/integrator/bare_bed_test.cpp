@@ -20,6 +20,9 @@ namespace {
 
 using shade::Color;
 
+constexpr int kColumns = 48;
+constexpr int kRows = 36;
+
 shade::SceneDescription transparentScene(const trace::Intersector& print, const char* brdf, const char* env,
                                          bool bed = true) {
     shade::SceneOptions options;
@@ -28,7 +31,15 @@ shade::SceneDescription transparentScene(const trace::Intersector& print, const 
     options.bed = bed;
     options.bed_height = 0.0;
     options.transparent = true;
-    return shade::makeScene(options, print, 48, 36);
+    return shade::makeScene(options, print, kColumns, kRows);
+}
+
+shade::RenderOptions pictureOf(int samples) {
+    shade::RenderOptions options;
+    options.width = kColumns;
+    options.height = kRows;
+    options.spp = samples;
+    return options;
 }
 
 /// Calls visit(pixel) for samples of one ray that sees a place on the bed.
@@ -85,10 +96,7 @@ TEST(ShadowCatcher, AlphaIsExactlyZeroWithoutAShadowAndOneInAFullOne) {
 
 TEST(ShadowCatcher, OverTheBareBedThePictureIsTheOpaqueOne) {
     const auto ball = test::sphere({0, 0, 1.2}, 1.0);
-    shade::RenderOptions options;
-    options.width = 48;
-    options.height = 36;
-    options.spp = 256;
+    const shade::RenderOptions options = pictureOf(256);
     auto opaque = transparentScene(ball, "lambert:0.7,0.3,0.1", "studio");
     const auto transparent = opaque;
     opaque.transparent = false;
@@ -137,10 +145,7 @@ TEST(BareBed, NoPixelIsBelowZero) {
     auto scene = transparentScene(ball, "lambert:0,0,0", "studio");
     scene.transparent = false;
     scene.catcher.reset();
-    shade::RenderOptions options;
-    options.width = 48;
-    options.height = 36;
-    options.spp = 2;
+    const shade::RenderOptions options = pictureOf(2);
     std::size_t dark = 0;
     const shade::Film film = shade::render(ball, scene, options).film;
     for (const shade::Pixel& pixel : film.pixels()) {
@@ -183,10 +188,7 @@ TEST(BareBed, ABlackBallTakesItsFormFactorAndABareBedHasNoNoise) {
 TEST(ShadowCatcher, DenoisingSmoothsTheShadowAndKeepsThePrint) {
     const auto ball = test::sphere({0, 0, 1.2}, 1.0);
     const auto scene = transparentScene(ball, "lambert:0.7,0.3,0.1", "constant:1,1,1");
-    shade::RenderOptions options;
-    options.width = 48;
-    options.height = 36;
-    options.spp = 1024;
+    shade::RenderOptions options = pictureOf(1024);
     const shade::Film reference = shade::render(ball, scene, options).film;
     options.spp = 8;
     shade::addDenoisingGuides(options);
@@ -212,10 +214,7 @@ TEST(ShadowCatcher, DenoisingSmoothsTheShadowAndKeepsThePrint) {
 
 TEST(ShadowCatcher, WithoutABedOrBehindAMapNothingIsBehindThePrint) {
     const auto ball = test::sphere({0, 0, 1.2}, 1.0);
-    shade::RenderOptions options;
-    options.width = 48;
-    options.height = 36;
-    options.spp = 4;
+    const shade::RenderOptions options = pictureOf(4);
     for (const char* env : {"studio", "sky"}) {
         const auto scene = transparentScene(ball, "lambert:0.7,0.3,0.1", env, false);
         EXPECT_FALSE(scene.catcher);
