@@ -121,8 +121,8 @@ ObjectMaterial::ObjectMaterial(std::shared_ptr<const Brdf> brdf) {
 }
 
 ObjectMaterial::ObjectMaterial(std::size_t attribute, const std::vector<std::shared_ptr<const Brdf>>& brdfs,
-                               std::function<std::size_t(const glm::vec3&)> choose)
-    : attribute_(attribute), choose_(std::move(choose)) {
+                               std::function<std::size_t(const glm::vec3&)> choose, bool filaments)
+    : attribute_(attribute), choose_(std::move(choose)), filaments_(filaments) {
     for (const auto& brdf : brdfs)
         materials_.push_back({brdf, reflectanceFactor(*brdf), brdf->variesByPlace(), brdf->undirected()});
 }
@@ -184,14 +184,15 @@ ObjectMaterial makeObjectMaterial(const MaterialOptions& options, const std::str
                                                           : recolored(*base, bodyOf(color), text));
         }
         brdfs.push_back(recolored(*base, kNeutral, text));
-        return {attribute, brdfs, [colors = summary.colors](const glm::vec3& v) {
-                    const auto before = [](const glm::vec3& a, const glm::vec3& b) {
-                        return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z);
-                    };
-                    const auto found = std::lower_bound(colors.begin(), colors.end(), v, before);
-                    return found != colors.end() && *found == v ? static_cast<std::size_t>(found - colors.begin()) + 1
-                                                                : std::size_t{0};
-                }};
+        const auto choose = [colors = summary.colors](const glm::vec3& v) {
+            const auto before = [](const glm::vec3& a, const glm::vec3& b) {
+                return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z);
+            };
+            const auto found = std::lower_bound(colors.begin(), colors.end(), v, before);
+            return found != colors.end() && *found == v ? static_cast<std::size_t>(found - colors.begin()) + 1
+                                                        : std::size_t{0};
+        };
+        return {attribute, brdfs, choose, true};
     }
     const double least = summary.least;
     const double span = summary.most - least;

@@ -13,6 +13,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -40,12 +41,20 @@ class ObjectMaterial {
 public:
     explicit ObjectMaterial(std::shared_ptr<const Brdf> brdf);
     /// @param attribute  number of the attribute, see Tracer::attribute()
-    /// @param brdfs      at least one; the last is for points without a value, and for values that are not finite
+    /// @param brdfs      at least two: the first for values that choose none, the last for points without a value, and
+    ///                   for values that are not finite
     /// @param choose     finite value -> index into brdfs
+    /// @param filaments  the values are the colors of filaments
     ObjectMaterial(std::size_t attribute, const std::vector<std::shared_ptr<const Brdf>>& brdfs,
-                   std::function<std::size_t(const glm::vec3&)> choose);
+                   std::function<std::size_t(const glm::vec3&)> choose, bool filaments = false);
 
     bool single() const { return !choose_; }
+    /// The materials that show what the object is made of: the only one, or those of its filaments. None where colors
+    /// stand for other values, such as features or speeds.
+    std::span<const Material> ofPlastic() const {
+        if (single()) return materials_;
+        return filaments_ ? std::span(materials_).subspan(1, materials_.size() - 2) : std::span<const Material>();
+    }
     /// Whether light goes through one of them.
     bool anyTranslucent() const;
     /// Whether one of them is another one at other places.
@@ -60,6 +69,7 @@ private:
     std::size_t attribute_ = 0;
     std::vector<Material> materials_;
     std::function<std::size_t(const glm::vec3&)> choose_;
+    bool filaments_ = false;
 };
 
 /// The material of `options` for an object whose attribute `options.by` has this number and summary.

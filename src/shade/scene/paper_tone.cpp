@@ -51,8 +51,8 @@ void matchPaper(SceneDescription& scene, BedSurface surface) {
     if (!scene.bed || scene.transparent || surface != BedSurface::paper) return;
     std::vector<Color> parts;
     for (const ObjectMaterial& object : scene.objects) {
-        if (!object.single()) return;
-        parts.push_back(object.only().albedo);
+        if (object.ofPlastic().empty()) return;
+        for (const Material& material : object.ofPlastic()) parts.push_back(material.albedo);
     }
     if (parts.empty()) parts.push_back(reflectanceFactor(*scene.material));
     const Color before = scene.bed->texture.mean();

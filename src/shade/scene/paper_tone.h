@@ -17,8 +17,9 @@ double colorDifference(const Color& a, const Color& b);
 Color paperFor(std::span<const Color> parts);
 inline constexpr double kLeastDifference = 25.0;  ///< CIE 1976; the light of the studio differs by as much
 
-/// Gives the paper of a scene, and the backdrop, that tone. Scenes whose objects have colors by place keep the light
-/// paper, as do other bed surfaces and transparent pictures.
+/// Gives the paper of a scene, and the backdrop, that tone. A print of several filaments counts as parts of their
+/// colors. Scenes whose objects have colors for other values keep the light paper, as do other bed surfaces and
+/// transparent pictures.
 void matchPaper(SceneDescription& scene, BedSurface surface);
 
 }  // namespace stratum::shade

@@ -39,6 +39,29 @@ TEST(PaperTone, FollowsThePart) {
     EXPECT_EQ(shade::paperFor(std::array{Color(0.5f), Color(0.12f)}), light);
 }
 
+TEST(PaperTone, FollowsEachFilamentOfAPrint) {
+    const auto ball = test::sphere({0, 0, 10}, 10.0);
+    const auto paperOf = [&ball](const std::vector<glm::vec3>& colors, trace::AttributeSummary::Kind kind) {
+        trace::AttributeSummary summary;
+        summary.kind = kind;
+        summary.colors = colors;
+        summary.most = 1;
+        shade::MaterialOptions options;
+        options.by = "color";
+        auto scene = shade::makeScene({}, ball, 64, 48);
+        scene.objects.push_back(shade::makeObjectMaterial(options, "plastic:0.8,0.2,0.1,0.2", 0, summary));
+        shade::matchPaper(scene, shade::BedSurface::paper);
+        return scene.bed->texture.mean();
+    };
+    using Kind = trace::AttributeSummary::Kind;
+    const Color light = shade::BedTexture(shade::BedSurface::paper).mean();
+    const glm::vec3 teal(0.0f, 0.6f, 0.5f), blue(0.02f, 0.1f, 0.3f);
+    EXPECT_EQ(paperOf({blue, teal}, Kind::color), light);
+    EXPECT_LT(paperOf({teal, glm::vec3(1.0f)}, Kind::color).g, 0.3f);
+    // The colors of a ramp say nothing about the plastic.
+    EXPECT_EQ(paperOf({teal, glm::vec3(1.0f)}, Kind::number), light);
+}
+
 /// Of neighbours on both sides of the silhouette: the share whose luminances differ by a fifth of the larger one.
 double distinct(const Color& body, bool match) {
     const auto ball = test::sphere({0, 0, 10}, 10.0);
