@@ -6,10 +6,7 @@
 
 namespace stratum::shade {
 
-Metal::Metal(const Color& color, float alpha)
-    : ggx_(alpha), once_(ggx_, AlbedoTable::Facets::steep, [](float) { return 1.0f; }) {
-    setColor(color);
-}
+Metal::Metal(const Color& color, float alpha) : ggx_(alpha), once_(AlbedoTable::ofMirrors(ggx_)) { setColor(color); }
 
 void Metal::setColor(const Color& color) {
     color_ = color;

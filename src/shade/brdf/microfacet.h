@@ -41,6 +41,9 @@ public:
     float along() const { return along_; }
     float across() const { return across_; }
     bool isotropic() const { return along_ == across_; }
+    float product() const { return product_; }
+    float acrossByAlong() const { return x_; }
+    float alongByAcross() const { return y_; }
 
     /// Density of facet normals, per steradian of projected area.
     float d(const glm::vec3& h) const {

@@ -7,10 +7,7 @@
 namespace stratum::shade {
 
 Plastic::Plastic(const Color& body, const Ggx& coat)
-    : body_(body),
-      body_max_(maxComponent(body)),
-      ggx_(coat),
-      coat_(ggx_, AlbedoTable::Facets::even, [](float cosine) { return fresnelDielectric(cosine, kEta); }) {
+    : body_(body), body_max_(maxComponent(body)), ggx_(coat), coat_(AlbedoTable::ofDielectric(ggx_, kEta)) {
     if (!coat.isotropic()) undirected_ = std::make_shared<Plastic>(body, std::sqrt(coat.along() * coat.across()));
 }
 
