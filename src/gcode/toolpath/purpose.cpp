@@ -18,6 +18,7 @@ constexpr double kMostCell = 2;     // mm; a wider line is a damaged number, or 
 constexpr int kPrimeCells = 4;      // that prime lines are wide at most
 constexpr int kBrimCells = 3;       // that a brim is wide at least
 constexpr double kCrossing = 0.05;  // of a brim's length
+constexpr double kThread = 0.1;     // of the usual width: thinner lines are threads of a move that extrudes
 
 Purpose ofTag(Feature feature) {
     switch (feature) {
@@ -64,8 +65,14 @@ public:
 
     void tell() {
         measure();
-        for (std::uint32_t bead = 0; bead < toolpath_.beads.size(); ++bead)
-            if (toolpath_.runOf(toolpath_.beads[bead]).layer > 0 && topOf(bead) <= above_) beads_.push_back(bead);
+        for (std::uint32_t bead = 0; bead < toolpath_.beads.size(); ++bead) {
+            if (toolpath_.runOf(toolpath_.beads[bead]).layer == 0 || topOf(bead) > above_) continue;
+            if (isUnknown(bead) && toolpath_.beads[bead].width < kThread * cell_)
+                purposes_[bead] = Purpose::beside;
+            else
+                beads_.push_back(bead);
+        }
+        if (beads_.empty()) return;
         findIslands();
         const bool any_goes_on =
             std::any_of(islands_.begin(), islands_.end(), [](const auto& island) { return island.second.goes_on; });
@@ -167,6 +174,13 @@ private:
         for (auto& [first, island] : islands_) island.goes_on = island.top > skirt_;
     }
 
+    // Before all other beads. Where a part does not begin with a level layer, prime lines may lie above its lowest
+    // beads.
+    bool isPrintedFirst(const Island& island) const {
+        return island.beads.front() == beads_.front() &&
+               island.beads.back() - island.beads.front() + 1 == island.beads.size();
+    }
+
     bool isSkirt(const Island& island) const {
         return std::any_of(islands_.begin(), islands_.end(), [&island](const auto& other) {
             return other.second.goes_on && island.box.holds(other.second.box);
@@ -174,7 +188,7 @@ private:
     }
 
     bool isPrime(const Island& island) const {
-        if (island.top > first_layer_) return false;
+        if (island.top > first_layer_ && !isPrintedFirst(island)) return false;
         PlanCells cells;
         for (const std::uint32_t bead : island.beads)
             alongBead(bead, [&](PlanCell cell) { cells.emplace(cell.key(), bead); });

@@ -112,6 +112,33 @@ TEST(Purpose, LinesBesideThePartArePrimeLines) {
     EXPECT_NEAR(beside(toolpath), 200, 0.01);
 }
 
+// A part whose first layer is a wave, from the bed up: the prime lines before it are not at its lowest place.
+TEST(Purpose, PrimeLinesMayLieAboveAWavyFirstLayer) {
+    const auto wave = [](bool first) {
+        Program program;
+        if (first) program.up(0.3).line(-20, 0, -20, 100).line(-19.6, 100, -19.6, 0);
+        for (int layer = 1; layer <= 8; ++layer)
+            for (double x = 0; x < 20; x += kLine)
+                program.up(kLayer * layer - 0.15 + 0.1 * std::sin(x)).line(x, 0, x, 20);
+        if (!first) program.up(0.3).line(-20, 0, -20, 100).line(-19.6, 100, -19.6, 0);
+        return program.read();
+    };
+    EXPECT_NEAR(beside(wave(true)), 200, 0.01);
+    EXPECT_EQ(beside(wave(false)), 0);  // nobody primes at the end
+}
+
+// A move to the part that extrudes a little does not make prime lines a piece of it.
+TEST(Purpose, AThreadJoinsNothing) {
+    const Toolpath toolpath = Program()
+                                  .up(0.2)
+                                  .line(-20, 0, -20, 100)
+                                  .line(-19.6, 100, -19.6, 0)
+                                  .add("G1 X0 Y0 E0.01\n")
+                                  .box(0, 0, 20, 20, 1, 8)
+                                  .read();
+    EXPECT_NEAR(beside(toolpath), 219.6, 0.01);
+}
+
 TEST(Purpose, OnePlateOfFlatAndTallPartsIsAllPart) {
     // A flat one, and one of a single layer, which is no line; a ring beside them.
     const Toolpath toolpath = Program().up(0.2).slab(40, 0, 60, 20).slab(40, 40, 60, 45).box(0, 0, 20, 20, 1, 8).read();
