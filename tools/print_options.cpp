@@ -6,6 +6,7 @@
 #include "gcode/machine/belt.h"
 #include "gcode/machine/machine_limits.h"
 #include "gcode/option_names.h"
+#include "gcode/slicer/settings.h"
 
 #include <fmt/format.h>
 
@@ -159,6 +160,14 @@ void addReadingOptions(CLI::App& app, voxelize::PrintOptions& options) {
         ->allow_extra_args(false)
         ->check(CLI::Range(0.1, 20.0))
         ->type_name("MM,...")
+        ->group(reading);
+    app.add_option_function<std::string>(
+           "--tool-offsets",
+           [&options](const std::string& text) {
+               options.read.tool_offsets = gcode::toolOffsetsOf(text, "--tool-offsets");
+           },
+           "Where nozzles are in the head, if the slicer subtracts it and the file does not state it")
+        ->type_name("XxY,...")
         ->group(reading);
     app.add_option("--layer-height", options.read.layer_height, "Where neither tags nor Z moves tell")
         ->check(CLI::Range(0.001, 50.0))

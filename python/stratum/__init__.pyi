@@ -198,7 +198,7 @@ class Picture:
 def read(
     source: _Path | bytes | bytearray, *, timed: bool | None = ..., travels: bool | None = ..., progress: _Progress | None = ...,
     plate: int | None = ..., filament_diameter: float | Sequence[float] | None = ...,
-    filament_colors: str | Sequence[str] | None = ...,
+    filament_colors: str | Sequence[str] | None = ..., tool_offsets: str | None = ...,
     layer_height: float | None = ..., belt: float | None = ..., planar: bool | None = ...,
     e_mode: Literal["auto", "absolute", "relative"] | None = ...,
     firmware: Literal["auto", "marlin", "klipper", "reprap"] | None = ...,
@@ -277,7 +277,7 @@ def render(
     brick_values: Literal["int16", "float"] | None = ..., brick_cache: str | None = ...,
     clip: Sequence[float] | None = ..., grid: str | None = ..., file_up: Literal["z", "y"] | None = ...,
     printed: str | None = ..., plate: int | None = ..., filament_diameter: float | Sequence[float] | None = ...,
-    filament_colors: str | Sequence[str] | None = ...,
+    filament_colors: str | Sequence[str] | None = ..., tool_offsets: str | None = ...,
     layer_height: float | None = ..., belt: float | None = ..., planar: bool | None = ...,
     e_mode: Literal["auto", "absolute", "relative"] | None = ...,
     firmware: Literal["auto", "marlin", "klipper", "reprap"] | None = ...,

@@ -153,6 +153,7 @@ Toolpath readToolpath(std::string_view bytes, std::string_view name, const ReadO
     refuseOtherFormats(text.empty() ? program.text : text, name);
     Settings settings = readSettings(text);
     if (!program.cut_short.empty()) settings.cut_short = program.cut_short;
+    if (!options.tool_offsets.empty()) settings.tool_offsets = options.tool_offsets;
     const std::optional<double> nominal = options.layer_height ? options.layer_height : settings.layer_height;
 
     WarningLog warnings;

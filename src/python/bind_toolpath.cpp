@@ -38,7 +38,7 @@ timed: plan the motion of the machine, for Toolpath.timing and Toolpath.times; t
 travels: keep the moves that lay nothing, for Toolpath.travels; not with belt, flow_lag and sag.
 progress: called with the fraction done, 0..1.
 Returns a Toolpath. The options are those of the tools: plate, filament_diameter (mm, one or by tool), filament_colors (one or
-by tool, as --color), layer_height (mm), belt (degrees), planar, e_mode, firmware,
+by tool, as --color), tool_offsets ("0x0,18x0", mm), layer_height (mm), belt (degrees), planar, e_mode, firmware,
 planner, printer, beads, section, flow (per cent), flow_lag (s), pressure_advance (s), sag, crown, strings.
 
 Raises InputError for what is no G-code, UsageError for options out of range.)";

@@ -81,11 +81,12 @@ refused([VDBTRACE, "t.vdb", *SMALL, "--eye", "1,2"], 2, "--eye 1,2", "X,Y,Z")
 refused([VDBTRACE, "t.vdb", *SMALL, "--eye", "1,2,x"], 2, "X,Y,Z")
 refused([VDBTRACE, "t.vdb", *SMALL, "--focus", "1,2", "--f-number", "4"], 2, "--focus 1,2", "distance")
 refused([VDBTRACE, "t.vdb", *SMALL, "--phong", "1,2"], 2, "SHININESS")
+refused([VDBTRACE, "t.gcode", *SMALL, "--tool-offsets", "0,18"], 2, "--tool-offsets 0,18", "0x0,18x0")
 
 # --- what is for G-code alone is not ignored ------------------------------------------------------------------------------
 for words in (["--printed", "50%"], ["--layers", "1:2"], ["--features", "-skirt"], ["--object", "1"], ["--voxel-size", "0.1"],
               ["--voxels-per-layer", "2"], ["--tolerance", "0.1"], ["--memory-budget", "1GB"], ["--half-width", "3"],
-              ["--plate", "1"], ["--filament-diameter", "1.75"], ["--layer-height", "0.2"], ["--e-mode", "auto"],
+              ["--plate", "1"], ["--filament-diameter", "1.75"], ["--layer-height", "0.2"], ["--e-mode", "auto"], ["--tool-offsets", "0x0,18x0"],
               ["--firmware", "marlin"], ["--progress-series", "3"]):
     refused([VDBTRACE, "t.vdb", *SMALL, *words], 2, words[0] + ": needs G-code", "t.vdb is a level set", "the print itself")
 refused([VDBTRACE, "t.vdb", "--printed", "50%"], 2, "gcode2vdb --snapshots")

@@ -8,7 +8,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
 #include <cstdlib>
 #include <filesystem>
 #include <random>
@@ -144,6 +146,34 @@ TEST(Reader, DamagedAnywhere) {
         mutant.erase(random() % mutant.size(), random() % 40);
         readMutant(mutant);
     }
+}
+
+// Cura subtracted 18 mm from what the second tool prints and does not say so. The first tool's brim around the place of
+// the second one's cube shows where that belongs.
+TEST(Reader, TheSecondToolsCubeStandsInItsBrim) {
+    STRATUM_NEEDS_CORPUS(path, "gcode/gcode_metadata-cura_2ext.ufp");
+    ReadOptions options;
+    options.tool_offsets = {{}, {18, 0, 0}};
+    const InputFile file(path);
+    const Toolpath toolpath = readToolpath(file.bytes(), "cura_2ext.ufp", options);
+    const auto middle = [&](std::uint8_t tool, Feature feature) {
+        double low[2] = {1e9, 1e9};
+        double high[2] = {-1e9, -1e9};
+        for (const Bead& bead : toolpath.beads) {
+            const auto& run = toolpath.runOf(bead);
+            if (run.tool != tool || run.feature != feature || bead.x0 > 110) continue;
+            const double place[2] = {bead.x0, bead.y0};
+            for (int axis = 0; axis < 2; ++axis) {
+                low[axis] = std::min(low[axis], place[axis]);
+                high[axis] = std::max(high[axis], place[axis]);
+            }
+        }
+        return std::array{0.5 * (low[0] + high[0]), 0.5 * (low[1] + high[1])};
+    };
+    const auto brim = middle(0, Feature::skirt);
+    const auto cube = middle(1, Feature::external_perimeter);
+    EXPECT_NEAR(cube[0], brim[0], 0.02);
+    EXPECT_NEAR(cube[1], brim[1], 0.02);
 }
 
 // What the corpus' own footers say (see its README). The footers count what the slicer itself extrudes on the move:

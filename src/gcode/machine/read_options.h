@@ -5,6 +5,7 @@
 #include "gcode/machine/motion.h"
 #include "gcode/toolpath/color.h"
 #include "gcode/toolpath/deposit_model.h"
+#include "gcode/toolpath/frame.h"
 
 #include <cstdint>
 #include <functional>
@@ -44,6 +45,8 @@ struct ReadOptions {
     std::vector<double> filament_diameters;  ///< mm by tool, the last one also beyond; overrides the file's settings
     /// By tool; override the file's settings where there is one. Changes of filament within the print stay.
     std::vector<std::optional<Rgb>> filament_colors;
+    /// mm by tool: where nozzles are in the head, if the slicer has subtracted that; overrides the file's settings.
+    std::vector<Point> tool_offsets;
     std::optional<double> layer_height;  ///< mm; used where it follows neither from tags nor from Z
     std::optional<int> plate;            ///< number of a program in a .gcode.3mf; needed only if it has several
     /// Degrees between gantry and belt, 5 to 85; Z of the program moves the belt. None: as the file states it, else a

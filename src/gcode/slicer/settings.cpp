@@ -1,5 +1,6 @@
 #include "gcode/slicer/settings.h"
 
+#include "base/error.h"
 #include "gcode/slicer/cura_machines.h"
 #include "gcode/slicer/cura_profile.h"
 #include "gcode/slicer/truncation.h"
@@ -8,10 +9,13 @@
 #include "gcode/text/settings_comments.h"
 #include "gcode/toolpath/color.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <span>
+#include <utility>
 
 namespace stratum::gcode {
 namespace {
@@ -42,22 +46,6 @@ std::vector<std::optional<Rgb>> colors(std::string_view text) {
     std::vector<std::optional<Rgb>> values;
     for (const std::string_view part : partsOf(text, ";,")) values.push_back(parseColor(part));
     return values;
-}
-
-// "0x0,18x0": the nozzles' positions by tool.
-std::vector<Point> offsets(std::string_view text) {
-    std::vector<Point> values;
-    bool any = false;
-    for (const std::string_view one : partsOf(text, ",")) {
-        Point point;
-        const char* p = one.data();
-        const char* const end = p + one.size();
-        if (!parseNumber(p, end, point.x) || p == end || *p != 'x' || !parseNumber(++p, end, point.y)) return {};
-        if (!(std::abs(point.x) <= kFarthestNozzle && std::abs(point.y) <= kFarthestNozzle)) return {};
-        any = any || point.x != 0 || point.y != 0;
-        values.push_back(point);
-    }
-    return any ? values : std::vector<Point>{};
 }
 
 // The corners of the bed that Cura's settings of the machine state; empty if they don't.
@@ -224,7 +212,9 @@ private:
         } else if (key == "filament_colour") {
             filament_colors_ = colors(value);
         } else if (key == "extruder_offset") {
-            settings.tool_offsets = offsets(value);
+            settings.tool_offsets = parseToolOffsets(value).value_or(std::vector<Point>());
+            const auto isZero = [](const Point& offset) { return offset.x == 0 && offset.y == 0; };
+            if (std::ranges::all_of(settings.tool_offsets, isZero)) settings.tool_offsets.clear();
         } else if (key == "nozzle_diameter") {
             settings.nozzle_diameter = positiveNumber(value, 100);
         } else if (key == "extrusion_width" || key == "line_width") {
@@ -294,6 +284,27 @@ private:
 };
 
 }  // namespace
+
+std::optional<std::vector<Point>> parseToolOffsets(std::string_view text) {
+    std::vector<Point> values;
+    for (const std::string_view one : partsOf(text, ",")) {
+        Point point;
+        const char* p = one.data();
+        const char* const end = p + one.size();
+        if (!parseNumber(p, end, point.x) || p == end || *p != 'x' || !parseNumber(++p, end, point.y) || p != end)
+            return std::nullopt;
+        if (!(std::abs(point.x) <= kFarthestNozzle && std::abs(point.y) <= kFarthestNozzle)) return std::nullopt;
+        values.push_back(point);
+    }
+    if (values.empty()) return std::nullopt;
+    return values;
+}
+
+std::vector<Point> toolOffsetsOf(const std::string& text, const std::string& option) {
+    if (auto offsets = parseToolOffsets(text)) return *std::move(offsets);
+    throw UsageError(fmt::format("{} {}: expected XxY in mm for each tool, at most {:g} mm, such as 0x0,18x0", option,
+                                 text, kFarthestNozzle));
+}
 
 Settings readSettings(std::string_view bytes) {
     SettingsReader reader;

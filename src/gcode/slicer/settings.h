@@ -43,6 +43,11 @@ struct Settings {
     StatedFacts stated;           ///< other statements about the print
 };
 
+/// "0x0,18x0": the nozzles' positions by tool, mm, as PrusaSlicer's extruder_offset has them. None for other text.
+std::optional<std::vector<Point>> parseToolOffsets(std::string_view text);
+/// The same for a user's text. Throws UsageError, which begins with `option`.
+std::vector<Point> toolOffsetsOf(const std::string& text, const std::string& option);
+
 /// Reads the comments in the first and the last part of the bytes, scans the way of extruding, and checks for a
 /// truncated end. Never throws for invalid contents.
 Settings readSettings(std::string_view bytes);

@@ -7,6 +7,7 @@
 #include "gcode/machine/belt.h"
 #include "gcode/machine/machine_limits.h"
 #include "gcode/option_names.h"
+#include "gcode/slicer/settings.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -31,6 +32,8 @@ gcode::ReadOptions readOptionsOf(Keywords& options) {
         read.filament_colors = assemble::toolColorsOf(fmt::format("{}", fmt::join(colors, ",")),
                                                       options.function() + "(): filament_colors")
                                    .colors;
+    if (const auto text = options.text("tool_offsets"))
+        read.tool_offsets = gcode::toolOffsetsOf(*text, options.function() + "(): tool_offsets");
     if (const auto height = options.number("layer_height", 0.001, 50)) read.layer_height = *height;
     if (const auto angle = options.number("belt", gcode::kFlattestBelt, gcode::kSteepestBelt)) read.belt_angle = *angle;
     assign(read.planar, options.flag("planar"));

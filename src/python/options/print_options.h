@@ -8,9 +8,9 @@
 
 namespace stratum::python {
 
-/// plate, filament_diameter, filament_colors (a color a tool), layer_height, belt, planar, e_mode, firmware, planner,
-/// printer, beads, section, flow, flow_lag, pressure_advance, sag, crown, strings: as the tools' options of those
-/// names. Throws UsageError, InputError.
+/// plate, filament_diameter, filament_colors (a color a tool), tool_offsets, layer_height, belt, planar, e_mode,
+/// firmware, planner, printer, beads, section, flow, flow_lag, pressure_advance, sag, crown, strings: as the tools'
+/// options of those names. Throws UsageError, InputError.
 gcode::ReadOptions readOptionsOf(Keywords& options);
 
 /// voxel_size, voxels_per_layer, tolerance, memory_budget, half_width, layers, features, objects, tools. `pictures`:

@@ -10,7 +10,8 @@ namespace stratum::python {
 
 /// Those of readOptionsOf().
 inline constexpr std::string_view kReadParameters =
-    "plate=None, filament_diameter=None, filament_colors=None, layer_height=None, belt=None, planar=None, "
+    "plate=None, filament_diameter=None, filament_colors=None, tool_offsets=None, layer_height=None, belt=None, "
+    "planar=None, "
     "e_mode=None, firmware=None, planner=None, printer=None, beads=None, section=None, flow=None, "
     "flow_lag=None, pressure_advance=None, sag=None, crown=None, strings=None";
 /// Those of printOptionsOf().

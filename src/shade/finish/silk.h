@@ -2,8 +2,8 @@
 #pragma once
 
 #include "shade/brdf/brdf.h"
-#include "shade/brdf/metal.h"
 #include "shade/brdf/plastic.h"
+#include "shade/finish/metal.h"
 
 namespace stratum::shade {
 

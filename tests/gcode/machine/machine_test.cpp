@@ -86,6 +86,19 @@ TEST(Machine, WithoutM82OrM83TheSettingsDecide) {
     EXPECT_DOUBLE_EQ(readProgram("M82\n" + program, options).filament_mm, 1);  // the file has the last word
 }
 
+TEST(Machine, OffsetsOfToolsAreAdded) {
+    ReadOptions options;
+    options.tool_offsets = toolOffsetsOf("0x0,18x-1", "--tool-offsets");
+    const std::string program = "M83\nG1 Z.2\nG1 X10 E1\nT1\nG1 X-8 Y1 E1\nG1 X2 Y1 E1\n";
+    for (const std::string& settings : {std::string(), std::string("; extruder_offset = 0x0,5x5\n")}) {
+        const Toolpath toolpath = readProgram(program + settings, options);
+        expectStart(toolpath.beads.back(), 10, 0, 0.2);
+        expectEnd(toolpath.beads.back(), 20, 0, 0.2);
+    }
+    for (const char* bad : {"", "18", "0,18", "0x0,18x", "0x0,18xa", "0x0,1001x0", "nanx0", "0x0,18x0x1"})
+        EXPECT_THROW(toolOffsetsOf(bad, "--tool-offsets"), UsageError) << bad;
+}
+
 TEST(Machine, G92OfE) {
     EXPECT_DOUBLE_EQ(readProgram("M82\nG1 Z.2\nG1 X1 E5\nG92 E0\nG1 X2 E1\nG92 E10\nG1 X3 E12\n").filament_mm, 8);
     EXPECT_DOUBLE_EQ(readProgram("M82\nG1 Z.2\nG1 X1 E5\nG92 E\nG1 X2 E1\n").filament_mm, 6);

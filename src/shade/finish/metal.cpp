@@ -1,4 +1,4 @@
-#include "shade/brdf/metal.h"
+#include "shade/finish/metal.h"
 
 #include <glm/geometric.hpp>
 
