@@ -180,22 +180,36 @@ export class OwnPicture extends EventTarget {
     renderer.resize(...size.map((side) => Math.max(1, Math.round(side * scale))));
     this.#select(state);
     this.#selectLines(state, scale);
-    renderer.fine = !moving;
     this.#resting = { camera, state };
     if (moving) return this.#drawMoving(camera, state);
-    const done = renderer.draw(camera, state, 1, true);
+    const { quick } = this.#pace;
+    if (quick) {
+      // It stays until all beads are in the better one.
+      renderer.drawQuick(camera, state);
+      this.#frame = requestAnimationFrame(() => this.#goOn(true));
+      return;
+    }
+    const began = performance.now();
+    const done = renderer.collect(camera, state, 1, true);
+    renderer.light(camera, state);
     renderer.note();
+    this.#pace.rested(performance.now() - began);
     if (done) return this.#tell("complete");
-    this.#frame = requestAnimationFrame(() => this.#goOn());
+    this.#frame = requestAnimationFrame(() => this.#goOn(false));
   }
   #drawMoving(camera, state) {
     const began = performance.now();
     const renderer = this.#renderer;
-    renderer.draw(camera, state, 0, true);
+    const { quick } = this.#pace;
+    if (quick) renderer.drawQuick(camera, state);
+    else {
+      renderer.collect(camera, state, 0, true);
+      renderer.light(camera, state);
+    }
     const turn = this.#frames++ % 4;
     if (turn === 0) renderer.note();
-    else if (turn === 2) renderer.lookFor(camera, state, this.#pace.scale < 1 ? 8 : 32);
-    else if (this.#pace.scale < 1) renderer.finish();
+    else if (turn === 2) renderer.lookFor(camera, state, quick ? 8 : 32);
+    else if (quick) renderer.finish();
     else return;
     this.#pace.took(performance.now() - began);
   }
@@ -203,12 +217,15 @@ export class OwnPicture extends EventTarget {
   get size() {
     return this.#renderer.size;
   }
-  #goOn() {
+  #goOn(anew) {
     this.#frame = 0;
+    const renderer = this.#renderer;
     const { camera, state } = this.#resting;
-    const done = this.#renderer.draw(camera, state, 2, false);
-    if (!done) return (this.#frame = requestAnimationFrame(() => this.#goOn()));
-    this.#renderer.note();
+    const done = renderer.collect(camera, state, 2, anew);
+    if (done || !this.#pace.quick) renderer.light(camera, state);
+    else renderer.finish(); // what waits would hold up the next picture that moves
+    if (!done) return (this.#frame = requestAnimationFrame(() => this.#goOn(false)));
+    renderer.note();
     this.#tell("complete");
   }
 
