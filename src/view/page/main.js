@@ -27,6 +27,7 @@ const sentAt = new Map(); // times by number
 let viewFrom = 0; // the first number that the named view has
 let generation; // of the input's file
 let latest = 0; // the number that the last picture answers
+let awaited = false; // a finished picture
 let shownSize = [0, 0]; // of the last view that was asked for
 /** For measurements and tests: one entry a picture, the number of the last view, and of each kind of moves how many are shown. */
 const log = (window.vdbviewLog = []);
@@ -89,7 +90,9 @@ function sendAsked() {
   motion.show();
   if (!connection.ready) return;
   sentAt.set(++number, performance.now());
-  if (!own.ready || !moving) connection.send({ type: "show", number, moving, own: own.table?.complete && !own.why, state: toMessage(state, shownSize) });
+  const stops = own.ready && moving; // the picture that the server is at
+  if (!stops || awaited) connection.send({ type: "show", number, moving, own: own.table?.complete && !own.why, state: toMessage(state, shownSize) });
+  awaited = !stops;
   if (!moving) history.replaceState(null, "", location.pathname + location.search + toFragment(state, file));
 }
 
@@ -190,6 +193,7 @@ connection.addEventListener("picture", async ({ detail }) => {
   record({ kind: detail.kind, number: detail.number, at: now, latency: now - (sentAt.get(detail.number) ?? now), decode: now - arrived, width: detail.width, height: detail.height, bytes: detail.file.size });
   for (const key of sentAt.keys()) if (key < detail.number) sentAt.delete(key);
   if (detail.kind === "final") {
+    if (detail.number === number) awaited = false;
     picture.dataset.final = detail.number;
     window.vdbviewFinal = detail.file;
   }
