@@ -23,6 +23,7 @@ export class BeadRenderer {
     const most = gl.getParameter(gl.MAX_TEXTURE_SIZE);
     if (most < ROW || table.texels > ROW * most) throw new Error("too many beads for its textures");
     this.visible = new VisibleBeads(table.texels);
+    this.coarse = new Map(); // sets of CoarseBeads
     const { kinds } = table;
     this.beads = makeProgram(gl, beadVertices(kinds), beadFragments(kinds));
     this.lit = makeProgram(gl, screenVertices, lightFragments);
@@ -209,21 +210,25 @@ export class BeadRenderer {
     this.lines.draw({ ...values, eye: camera.eye }, this.textures.depths);
   }
 
-  /** How coarse beads may be, by the size of a pixel: by powers of two, so that it changes seldom. */
+  /** How coarse beads may be, by the size of a pixel: by powers of two, and it changes seldom. */
   #coarseFor(camera, { layers }) {
     const { low, grain, layerHeight } = this.table;
     const depth = dot(sub(low.map((v, axis) => v + 32768 * grain[axis]), camera.eye), camera.forward);
-    const pixel = 2 ** Math.floor(Math.log2((2 * Math.max(depth, 1) * Math.tan((camera.fov * Math.PI) / 360)) / this.size[1]));
+    const pixel = (2 * Math.max(depth, 1) * Math.tan((camera.fov * Math.PI) / 360)) / this.size[1];
     const few = layers[1] ? (layers[1] - (layers[0] || 1)) / 16 : Infinity;
-    const stride = 2 ** Math.floor(Math.log2(Math.max(1, Math.min(few, (1.5 * pixel) / layerHeight))));
-    const { coarse } = this.visible;
-    if (coarse?.stride === stride && coarse.tolerance === pixel) return coarse;
-    const other = new CoarseBeads(this.table, stride, pixel);
-    fillTable(this.gl, this.textures.coarse, other.texels, 1);
-    fillTable(this.gl, this.textures.ends, other.ends, 1);
-    this.visible.standFor(other);
+    const old = this.visible.coarse;
+    if (old && old.few === few && pixel > 0.8 * old.tolerance && pixel < 2.5 * old.tolerance) return old;
+    const tolerance = 2 ** Math.floor(Math.log2(pixel));
+    const stride = 2 ** Math.floor(Math.log2(Math.max(1, Math.min(few, (1.5 * tolerance) / layerHeight))));
+    const key = `${stride} ${tolerance}`;
+    if (!this.coarse.has(key)) this.coarse.set(key, new CoarseBeads(this.table, stride, tolerance));
+    const coarse = Object.assign(this.coarse.get(key), { few });
+    if (coarse === old) return old;
+    fillTable(this.gl, this.textures.coarse, coarse.texels, 1);
+    fillTable(this.gl, this.textures.ends, coarse.ends, 1);
+    this.visible.standFor(coarse);
     this.#bind();
-    return other;
+    return coarse;
   }
 
   /** Draws beads into a target from here on. */

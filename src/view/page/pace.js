@@ -3,6 +3,7 @@
 
 const SLOW = 80; // ms of a picture as at rest from which on they are drawn quickly
 const GOAL = 24; // ms of a quick one
+const START = 0.5; // of each side, of the first quick one
 const FAST = 5; // ms of a quick one of full size from which on they are drawn as at rest again
 const STEPS = 16; // of a side
 const LEAST = 4 / STEPS;
@@ -13,21 +14,24 @@ export class Pace {
   #slow = 0; // pictures as at rest, one after the other
   #last = 0; // ms of the last quick one
 
-  /** A picture at rest took so long, ms. */
+  /** The beginning of a picture at rest took so long, ms. */
   rested(time) {
     if (this.quick) return;
     this.#slow = time > SLOW ? this.#slow + 1 : 0;
     this.quick = this.#slow >= 2; // a program may have been compiled
+    if (this.quick) this.scale = START;
   }
   /** A moving picture took so long, ms. */
   took(time) {
     if (!this.quick) return this.rested(time);
-    // The time goes with the pixels at most, so that this is the least that fits; it rises slowly, and falls if two in a row
-    // were slow.
-    const fits = Math.floor(this.scale * Math.sqrt(GOAL / Math.max(Math.min(time, this.#last), 0.1)) * STEPS) / STEPS;
-    this.#last = time;
     this.quick = this.scale < 1 || time > FAST;
     this.#slow = 0;
+    this.#fit(Math.min(time, this.#last)); // it gets smaller if two in a row were slow
+    this.#last = time;
+  }
+  // The time goes with the pixels at most, so that this is the least that fits; it rises slowly.
+  #fit(time) {
+    const fits = Math.floor(this.scale * Math.sqrt(GOAL / Math.max(time, 0.1)) * STEPS) / STEPS;
     this.scale = Math.max(LEAST, Math.min(1, fits > this.scale ? this.scale + 1 / STEPS : Math.max(fits, this.scale / 2)));
   }
 }

@@ -3,7 +3,7 @@
 // its surface. A quick one draws coarse beads instead, see coarse_beads.js. A view at rest adds all beads, in parts, until
 // none is missing.
 
-const PART = 16384; // beads
+const PART = 4096; // beads
 // Looks after which a bead that is not seen is left out: one that was seen, and one that was expected.
 const FINE = { forget: 12, doubt: 2 };
 const COARSE = { forget: 4, doubt: 1 };
