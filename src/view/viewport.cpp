@@ -124,7 +124,9 @@ void Viewport::take() {
     still_.reset();
     full_.reset();
     plan_ = planPicture(document_.given(), current_.state);
-    set(current_.own ? Stage::exact : Stage::moving);
+    // A page that draws what moves wants nothing meanwhile, also not the processor's time.
+    if (current_.own) return set(current_.moving ? Stage::idle : Stage::exact);
+    set(Stage::moving);
 }
 
 void Viewport::step(const std::function<void()>& check) {

@@ -55,6 +55,26 @@ TEST(Viewport, SendsNoMoreThanThePageTakes) {
     EXPECT_FALSE(page.shown.waitFor("picture", 6, "final").is_null());
 }
 
+// The processors are the page's while it draws what moves.
+TEST(Viewport, GivesUpAPictureWhenThePageDrawsWhatMoves) {
+    OnePage page;
+    ShowMessage show = test::show(1, test::smallState());
+    show.own = true;
+    page.viewport.ask(show);
+    page.viewport.step([] {});
+    EXPECT_TRUE(page.viewport.hasWork(false));
+    show.number = 2;
+    show.moving = true;
+    page.viewport.ask(show);
+    page.workUntilIdle();
+    EXPECT_TRUE(page.shown.kinds().empty());
+    show.number = 3;
+    show.moving = false;
+    page.viewport.ask(show);
+    page.workUntilIdle();
+    EXPECT_EQ(page.shown.kinds(), (std::vector<std::string>{"final"}));
+}
+
 // The saved picture is of its own view, whatever is looked at meanwhile.
 TEST(Viewport, WhatIsSavedIsWhatWasAskedFor) {
     OnePage page;

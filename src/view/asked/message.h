@@ -16,7 +16,9 @@ namespace stratum::view {
 struct ShowMessage {
     std::uint64_t number = 0;  ///< of the page's; pictures say which one they answer
     bool moving = false;       ///< more will follow at once: a quick picture is enough
-    bool own = false;          ///< the page draws moving pictures itself: what it needs for them, then the finished one
+    /// The page draws moving pictures itself: while it moves, none is wanted; at rest what it needs for them, then the
+    /// finished one.
+    bool own = false;
     ViewState state;
 };
 /// What is at this place of the picture?

@@ -1,5 +1,5 @@
 // What a click has found: the bead, its line of G-code, and the distance of two clicks. Marks follow the picture.
-import { element } from "./elements.js";
+import { element, pixelRatio } from "./elements.js";
 import { project, sub, size, times } from "./camera.js";
 
 const fixed = (value, digits = 2) => value.toFixed(digits);
@@ -105,7 +105,7 @@ export class Answer {
   draw(camera = this.camera, aspect = this.aspect) {
     Object.assign(this, { camera, aspect });
     const canvas = this.marks;
-    const ratio = devicePixelRatio || 1;
+    const ratio = pixelRatio();
     canvas.width = Math.round(canvas.clientWidth * ratio);
     canvas.height = Math.round(canvas.clientHeight * ratio);
     const context = canvas.getContext("2d");

@@ -1,6 +1,9 @@
-// Draws a table of beads with WebGL2, in two passes: which bead is nearest, then the light on it.
+// Draws a table of beads with WebGL2, in two passes: which bead is nearest, then the light on it; or, where that takes too
+// long, in one.
 import { SOUGHT, beadFragments, beadVertices, seekFragments, seekVertices } from "./bead_shaders.js";
-import { GRID, backFragments, backVertices, lightFragments, screenVertices } from "./light_shaders.js";
+import { GRID, backFragments, backVertices, gridFragments, lightFragments, screenVertices } from "./light_shaders.js";
+import { CoarseBeads } from "./coarse_beads.js";
+import { piecesOf, quickFragments, quickVertices } from "./quick_shaders.js";
 import { VisibleBeads } from "./visible_beads.js";
 import { LineRenderer } from "./line_renderer.js";
 import { ROW, fillTable, makeFramebuffer, makeIndices, makeProgram, makeTable, makeTexture, release, setUniforms } from "./webgl.js";
@@ -20,24 +23,27 @@ export class BeadRenderer {
     const most = gl.getParameter(gl.MAX_TEXTURE_SIZE);
     if (most < ROW || table.texels > ROW * most) throw new Error("too many beads for its textures");
     this.visible = new VisibleBeads(table.texels);
-    const kinds = table.kinds;
-    const defines = ["arcs", "tapers", "slopes", "corners", "extras"].filter((kind) => kinds[kind]).map((kind) => `#define ${kind.toUpperCase()}`).join("\n");
-    this.beads = makeProgram(gl, beadVertices(defines), beadFragments(defines));
-    this.light = makeProgram(gl, screenVertices, lightFragments(true));
-    this.plain = makeProgram(gl, screenVertices, lightFragments(false));
-    this.seek = makeProgram(gl, seekVertices(defines), seekFragments);
+    this.coarse = new Map(); // sets of CoarseBeads
+    const { kinds } = table;
+    this.beads = makeProgram(gl, beadVertices(kinds), beadFragments(kinds));
+    this.lit = makeProgram(gl, screenVertices, lightFragments);
+    this.seek = makeProgram(gl, seekVertices(kinds), seekFragments);
     this.back = makeProgram(gl, backVertices, backFragments);
+    this.backGrid = makeProgram(gl, backVertices, gridFragments);
     this.textures = {
       beads: makeTable(gl, table.words, 4),
       runs: makeTable(gl, table.runs, 4),
       shown: makeTable(gl, new Uint8Array(table.runs.length / 4).fill(1), 1),
       list: makeTable(gl, new Uint32Array(ROW), 1),
+      coarse: makeTable(gl, new Uint32Array(1), 1),
+      ends: makeTable(gl, new Uint32Array(1), 1),
       colors: makeTable(gl, new Uint16Array(1), 1),
       palette: makeTexture(gl),
       light: makeTexture(gl, gl.LINEAR),
       ids: makeTexture(gl),
       normals: makeTexture(gl),
       depths: makeTexture(gl),
+      picture: makeTexture(gl),
     };
     this.listRows = 1;
     this.units = Object.fromEntries(Object.keys(this.textures).map((name, n) => [name, n]));
@@ -49,6 +55,7 @@ export class BeadRenderer {
       for (let x = 0; x < GRID[0]; ++x) grid.push(...[0, 1, GRID[0] + 1, GRID[0] + 1, 1, GRID[0] + 2].map((k) => y * (GRID[0] + 1) + x + k));
     this.grid = makeIndices(gl, Uint16Array.from(grid));
     this.target = makeFramebuffer(gl);
+    this.quickTarget = makeFramebuffer(gl);
     this.found = makeFramebuffer(gl);
     const found = makeTexture(gl);
     gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA8, ROW, SOUGHT / ROW, 0, gl.RGBA, gl.UNSIGNED_BYTE, null);
@@ -103,13 +110,16 @@ export class BeadRenderer {
       gl.bindTexture(gl.TEXTURE_2D, this.textures[name]);
       gl.texImage2D(gl.TEXTURE_2D, 0, gl.R32UI, width, height, 0, gl.RED_INTEGER, gl.UNSIGNED_INT, null);
     }
+    gl.bindTexture(gl.TEXTURE_2D, this.textures.picture);
+    gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA8, width, height, 0, gl.RGBA, gl.UNSIGNED_BYTE, null);
     gl.bindTexture(gl.TEXTURE_2D, this.textures.depths);
     gl.texImage2D(gl.TEXTURE_2D, 0, gl.DEPTH_COMPONENT32F, width, height, 0, gl.DEPTH_COMPONENT, gl.FLOAT, null);
-    gl.bindFramebuffer(gl.FRAMEBUFFER, this.target);
-    gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0, gl.TEXTURE_2D, this.textures.ids, 0);
-    gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT1, gl.TEXTURE_2D, this.textures.normals, 0);
-    gl.drawBuffers([gl.COLOR_ATTACHMENT0, gl.COLOR_ATTACHMENT1]);
-    gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.DEPTH_ATTACHMENT, gl.TEXTURE_2D, this.textures.depths, 0);
+    for (const [target, ...names] of [[this.target, "ids", "normals"], [this.quickTarget, "picture", "ids"]]) {
+      gl.bindFramebuffer(gl.FRAMEBUFFER, target);
+      names.forEach((name, n) => gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0 + n, gl.TEXTURE_2D, this.textures[name], 0));
+      gl.drawBuffers([gl.COLOR_ATTACHMENT0, gl.COLOR_ATTACHMENT1]);
+      gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.DEPTH_ATTACHMENT, gl.TEXTURE_2D, this.textures.depths, 0);
+    }
   }
 
   #view(camera, state) {
@@ -137,35 +147,104 @@ export class BeadRenderer {
   }
 
   /** Starts a picture, or goes on with it: `parts` more of all beads. Returns whether all of them are in it. */
-  draw(camera, state, parts, anew) {
+  collect(camera, state, parts, anew) {
     const gl = this.gl;
-    const { program } = this.beads;
-    const view = this.#view(camera, state);
-    this.#bind();
-    gl.useProgram(program);
-    setUniforms(gl, this.beads, view);
-    gl.bindFramebuffer(gl.FRAMEBUFFER, this.target);
-    gl.viewport(0, 0, ...this.size);
-    gl.enable(gl.DEPTH_TEST);
-    gl.depthFunc(gl.GREATER);
-    gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, this.corners);
+    this.#use(this.beads, this.target, this.#view(camera, state));
     if (anew) {
       this.visible.restart();
       gl.clearBufferuiv(gl.COLOR, 0, [0, 0, 0, 0]);
       gl.clearBufferfv(gl.DEPTH, 0, [0]);
-      this.#drawList();
+      this.#drawList(this.beads, 1);
     }
     for (let n = 0; n < parts; ++n) {
       const part = this.visible.part();
       if (!part) break;
-      this.#drawBeads(false, ...part);
+      this.#drawBeads(this.beads, 1, false, ...part);
     }
-    this.#lit(view, state, camera);
-    this.lines.draw({ ...view, eye: camera.eye }, this.textures.depths);
     return this.visible.partsLeft === 0;
   }
 
-  #drawList() {
+  /** Shows what was collected. */
+  light(camera, state) {
+    const gl = this.gl;
+    gl.bindFramebuffer(gl.FRAMEBUFFER, null);
+    gl.disable(gl.DEPTH_TEST);
+    const values = this.#stage(camera, state);
+    if (values.as_normals) gl.clear(gl.COLOR_BUFFER_BIT);
+    else this.#drawBack(values);
+    gl.useProgram(this.lit.program);
+    setUniforms(gl, this.lit, values);
+    gl.enable(gl.BLEND);
+    gl.blendFunc(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA);
+    gl.enable(gl.SCISSOR_TEST);
+    gl.scissor(...this.#frame(camera));
+    gl.drawArrays(gl.TRIANGLES, 0, 3);
+    gl.disable(gl.SCISSOR_TEST);
+    gl.disable(gl.BLEND);
+    this.lines.draw({ ...values, eye: camera.eye }, this.textures.depths);
+  }
+
+  /** A picture of the beads that were seen lately, by the quick shaders. */
+  drawQuick(camera, state) {
+    const gl = this.gl;
+    const { kinds } = this.table;
+    this.quick ??= makeProgram(gl, quickVertices(kinds), quickFragments);
+    const coarse = this.#coarseFor(camera, state);
+    const values = { ...this.#stage(camera, state), least: 0.6 * coarse.stride * this.table.layerHeight };
+    this.#use(this.quick, this.quickTarget, values);
+    gl.clearBufferfv(gl.COLOR, 0, [0, 0, 0, 1]);
+    gl.clearBufferuiv(gl.COLOR, 1, [0, 0, 0, 0]);
+    gl.clearBufferfv(gl.DEPTH, 0, [0]);
+    this.#drawList(this.quick, piecesOf(kinds));
+    if (!values.as_normals) {
+      gl.drawBuffers([gl.COLOR_ATTACHMENT0, gl.NONE]);
+      gl.depthFunc(gl.EQUAL); // where no bead is
+      this.#drawBack(values);
+      gl.drawBuffers([gl.COLOR_ATTACHMENT0, gl.COLOR_ATTACHMENT1]);
+    }
+    gl.bindFramebuffer(gl.DRAW_FRAMEBUFFER, null);
+    const whole = [0, 0, ...this.size];
+    gl.blitFramebuffer(...whole, ...whole, gl.COLOR_BUFFER_BIT, gl.NEAREST);
+    gl.bindFramebuffer(gl.FRAMEBUFFER, null);
+    gl.disable(gl.DEPTH_TEST);
+    this.lines.draw({ ...values, eye: camera.eye }, this.textures.depths);
+  }
+
+  /** How coarse beads may be, by the size of a pixel: by powers of two, and it changes seldom. */
+  #coarseFor(camera, { layers }) {
+    const { low, grain, layerHeight } = this.table;
+    const depth = dot(sub(low.map((v, axis) => v + 32768 * grain[axis]), camera.eye), camera.forward);
+    const pixel = (2 * Math.max(depth, 1) * Math.tan((camera.fov * Math.PI) / 360)) / this.size[1];
+    const few = layers[1] ? (layers[1] - (layers[0] || 1)) / 16 : Infinity;
+    const old = this.visible.coarse;
+    if (old && old.few === few && pixel > 0.8 * old.tolerance && pixel < 2.5 * old.tolerance) return old;
+    const tolerance = 2 ** Math.floor(Math.log2(pixel));
+    const stride = 2 ** Math.floor(Math.log2(Math.max(1, Math.min(few, (1.5 * tolerance) / layerHeight))));
+    const key = `${stride} ${tolerance}`;
+    if (!this.coarse.has(key)) this.coarse.set(key, new CoarseBeads(this.table, stride, tolerance));
+    const coarse = Object.assign(this.coarse.get(key), { few });
+    if (coarse === old) return old;
+    fillTable(this.gl, this.textures.coarse, coarse.texels, 1);
+    fillTable(this.gl, this.textures.ends, coarse.ends, 1);
+    this.visible.standFor(coarse);
+    this.#bind();
+    return coarse;
+  }
+
+  /** Draws beads into a target from here on. */
+  #use(program, target, values) {
+    const gl = this.gl;
+    this.#bind();
+    gl.useProgram(program.program);
+    setUniforms(gl, program, values);
+    gl.bindFramebuffer(gl.FRAMEBUFFER, target);
+    gl.viewport(0, 0, ...this.size);
+    gl.enable(gl.DEPTH_TEST);
+    gl.depthFunc(gl.GREATER);
+    gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, this.corners);
+  }
+
+  #drawList(program, pieces) {
     const gl = this.gl;
     const { visible } = this;
     const rows = Math.ceil(visible.count / ROW);
@@ -183,48 +262,39 @@ export class BeadRenderer {
       gl.texSubImage2D(gl.TEXTURE_2D, 0, 0, y, count, 1, gl.RED_INTEGER, gl.UNSIGNED_INT, visible.list, y * ROW);
     }
     visible.changedFrom = visible.count;
-    this.#drawBeads(true, 0, visible.count);
+    this.#drawBeads(program, pieces, true, 0, visible.count);
   }
 
-  #drawBeads(from_list, first, count) {
+  #drawBeads(program, pieces, from_list, first, count) {
     const gl = this.gl;
-    for (let n = 0; n < count; n += DRAW) {
-      setUniforms(gl, this.beads, { from_list, first: first + n });
-      gl.drawElements(gl.TRIANGLES, 6 * Math.min(DRAW, count - n), gl.UNSIGNED_SHORT, 0);
+    const most = DRAW / pieces;
+    for (let n = 0; n < count; n += most) {
+      setUniforms(gl, program, { from_list, first: first + n });
+      gl.drawElements(gl.TRIANGLES, 6 * pieces * Math.min(most, count - n), gl.UNSIGNED_SHORT, 0);
     }
   }
 
-  #lit(view, state, camera) {
-    const gl = this.gl;
+  /** What programs get that make light. */
+  #stage(camera, state) {
     const { look } = this;
     const bed = camera.eye[2] > look.bed?.z ? look.bed : null;
     const angle = look.follows ? Math.atan2(camera.right[1], camera.right[0]) - Math.atan2(look.right[1], look.right[0]) : 0;
-    const values = {
-      ...view, has_bed: Number(bed !== null), bed_albedo: bed?.albedo ?? [0, 0, 0], horizon: look.horizon, zenith: look.zenith,
+    return {
+      ...this.#view(camera, state), has_bed: Number(bed !== null), bed_albedo: bed?.albedo ?? [0, 0, 0], horizon: look.horizon, zenith: look.zenith,
       turned: [Math.cos(angle), Math.sin(angle)], brightest: look.brightest, scale: 2 ** look.exposure,
-      bed_z: (bed?.z ?? 0) - camera.eye[2], lines: bed?.grid ? 1 : 0, corner: this.table.low.slice(0, 2),
+      bed_z: (bed?.z ?? 0) - camera.eye[2], corner: this.table.low.slice(0, 2),
       fade: bed ? [bed.center[0] - camera.eye[0], bed.center[1] - camera.eye[1], ...bed.fade] : [0, 0, 0, 1],
+      colored: Number(this.colored ?? false), as_normals: Number(state.integrator === "normal"), albedo: look.albedo, reach: look.reach,
     };
-    gl.bindFramebuffer(gl.FRAMEBUFFER, null);
-    gl.disable(gl.DEPTH_TEST);
-    const as_normals = state.integrator === "normal";
-    if (as_normals) gl.clear(gl.COLOR_BUFFER_BIT);
-    else {
-      gl.useProgram(this.back.program);
-      setUniforms(gl, this.back, values);
-      gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, this.grid);
-      gl.drawElements(gl.TRIANGLES, 6 * GRID[0] * GRID[1], gl.UNSIGNED_SHORT, 0);
-    }
-    const light = this.fine ? this.light : this.plain;
-    gl.useProgram(light.program);
-    setUniforms(gl, light, { ...values, colored: Number(this.colored ?? false), as_normals: Number(as_normals), albedo: look.albedo, reach: look.reach });
-    gl.enable(gl.BLEND);
-    gl.blendFunc(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA);
-    gl.enable(gl.SCISSOR_TEST);
-    gl.scissor(...this.#frame(camera));
-    gl.drawArrays(gl.TRIANGLES, 0, 3);
-    gl.disable(gl.SCISSOR_TEST);
-    gl.disable(gl.BLEND);
+  }
+
+  #drawBack(values) {
+    const gl = this.gl;
+    const back = values.has_bed && this.look.bed.grid ? this.backGrid : this.back;
+    gl.useProgram(back.program);
+    setUniforms(gl, back, values);
+    gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, this.grid);
+    gl.drawElements(gl.TRIANGLES, 6 * GRID[0] * GRID[1], gl.UNSIGNED_SHORT, 0);
   }
 
   /** Pixels that the print's box may cover: x, y, width, height from below. */
@@ -246,18 +316,22 @@ export class BeadRenderer {
   /** Looks in the last picture for `rows` more of the beads that may have come into sight; the next one has them. */
   lookFor(camera, state, rows) {
     const gl = this.gl;
+    const { coarse } = this.visible;
     const [first, count] = this.visible.sought(rows * ROW);
     this.shift = ((this.shift ?? 0) + 0.618) % 1;
     this.#bind();
     gl.useProgram(this.seek.program);
-    setUniforms(gl, this.seek, { ...this.#view(camera, state), first, shift: this.shift });
+    setUniforms(gl, this.seek, { ...this.#view(camera, state), list: this.units.coarse, from_list: coarse !== null, first, shift: this.shift });
     gl.bindFramebuffer(gl.FRAMEBUFFER, this.found);
     gl.viewport(0, 0, ROW, SOUGHT / ROW);
     gl.clearBufferfv(gl.COLOR, 0, [0, 0, 0, 0]);
     gl.drawArrays(gl.POINTS, 0, count);
     const found = new Uint32Array(rows * ROW);
     gl.readPixels(0, 0, ROW, rows, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(found.buffer));
-    for (let n = 0; n < count; ++n) if (found[n]) this.visible.expect(first + n, first + n + 1);
+    for (let n = 0; n < count; ++n) {
+      const texel = coarse ? coarse.texels[first + n] : first + n;
+      if (found[n]) this.visible.expect(texel, texel + 1);
+    }
   }
 
   /** Waits until the picture is there. */

@@ -112,6 +112,18 @@ Bead beadAt(uint n) {
   return b;
 }
 
+// A point of its path, from the eye.
+vec3 pointOf(Bead b, float share) {
+  vec3 p = b.start + vec3(b.along * b.len, b.climb) * share;
+#ifdef ARCS
+  if (b.arc.z > 0.0) {
+    float c = cos(b.sweep * share), s = sin(b.sweep * share);
+    p.xy = b.start.xy + b.arc.xy + b.arc.z * vec2(c * b.from.x - s * b.from.y, s * b.from.x + c * b.from.y);
+  }
+#endif
+  return p;
+}
+
 // The box of a bead: from low to high along the path, across it, and up, from its start.
 void boxOf(Bead b, out vec3 low, out vec3 high) {
   float reach = max(b.flat0, b.flat1) + b.radius;
@@ -292,11 +304,14 @@ bool meets(Bead b, vec3 ray, out float depth, out vec3 normal) {
   return true;
 }`;
 
-/** Which of the beads are drawn: of a range, or of a list of them. */
+// Which of the beads are drawn: of a range, or of a list of them.
 const CHOICE = `
 uniform usampler2D shown;   // by run
+uniform usampler2D list;    // of texels; used if from_list
+uniform bool from_list;
 uniform uint first;         // of the draw
 uniform uvec2 texels;       // that are printed: from, to
+uint chosen(uint n) { return from_list ? row(list, first + n).x : first + n; }
 bool isShown(uint n) {
   if (n < texels.x || n >= texels.y) return false;
 #ifdef EXTRAS
@@ -305,19 +320,18 @@ bool isShown(uint n) {
   return row(shown, row(beads, n).w >> 13u).x != 0u;
 }`;
 
+/** Both, of a table that has these kinds of beads. */
+export const bead = (kinds) =>
+  ["arcs", "tapers", "slopes", "corners", "extras"].filter((kind) => kinds[kind]).map((kind) => `#define ${kind.toUpperCase()}\n`).join("") + BEAD + CHOICE;
+
 /** Beads of the table, or of a list: each a rectangle on the picture about its box, as near as its nearest corner. */
-export const beadVertices = (defines) => `${HEAD}
-${defines}
-${BEAD}
-${CHOICE}
-uniform usampler2D list;    // of texels; used if from_list
-uniform bool from_list;
+export const beadVertices = (kinds) => `${HEAD}
+${bead(kinds)}
 flat out uint id;
 flat out Bead body;
 void main() {
   gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
-  uint n = first + uint(gl_VertexID >> 2);
-  if (from_list) n = row(list, n).x;
+  uint n = chosen(uint(gl_VertexID >> 2));
   id = n + 1u;
   if (!isShown(n)) return;
   body = beadAt(n);
@@ -353,10 +367,8 @@ void main() {
 
 /** Of each bead, a point of a table: whether a point of its upper (or lower) or of its near side is not behind what the
  * picture shows there. */
-export const seekVertices = (defines) => `${HEAD}
-${defines}
-${BEAD}
-${CHOICE}
+export const seekVertices = (kinds) => `${HEAD}
+${bead(kinds)}
 uniform sampler2D depths;
 uniform vec2 size;          // pixels
 uniform float shift;        // 0 to 1, of the points along the bead
@@ -374,14 +386,7 @@ bool inSight(Bead b) {
   float reach = max(b.flat0, b.flat1) + b.radius;
   int points = clamp(int(b.len), 2, 16);
   for (int n = 0; n < points; ++n) {
-    float share = (float(n) + shift) / float(points);
-    vec3 p = b.start + vec3(b.along * b.len, b.climb) * share;
-#ifdef ARCS
-    if (b.arc.z > 0.0) {
-      float c = cos(b.sweep * share), s = sin(b.sweep * share);
-      p.xy = b.start.xy + b.arc.xy + b.arc.z * vec2(c * b.from.x - s * b.from.y, s * b.from.x + c * b.from.y);
-    }
-#endif
+    vec3 p = pointOf(b, (float(n) + shift) / float(points));
     vec3 level = vec3(0.0, 0.0, p.z < 0.0 ? b.radius + b.side : -b.radius - b.side);
     vec3 beside = vec3(-reach * p.xy / max(length(p.xy), 1e-6), 0.0);
     if (isAhead(p + level, b) || isAhead(p + beside, b)) return true;
@@ -391,7 +396,7 @@ bool inSight(Bead b) {
 void main() {
   gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
   gl_PointSize = 1.0;
-  uint n = first + uint(gl_VertexID);
+  uint n = chosen(uint(gl_VertexID));
   if (!isShown(n) || !inSight(beadAt(n))) return;
   vec2 place = vec2(gl_VertexID & ${ROW - 1}, gl_VertexID >> ${ROW_BITS}) + 0.5;
   gl_Position = vec4(2.0 * place / vec2(${ROW}, ${SOUGHT / ROW}) - 1.0, 0.0, 1.0);
@@ -401,9 +406,8 @@ out vec4 found;
 void main() { found = vec4(1.0); }`;
 
 /** Which bead is nearest, with its normal (see packed()) and its exact depth (1 near the eye, 0 far away). */
-export const beadFragments = (defines) => `${HEAD}
-${defines}
-${BEAD}
+export const beadFragments = (kinds) => `${HEAD}
+${bead(kinds)}
 uniform vec2 size;          // pixels
 flat in uint id;
 flat in Bead body;

@@ -49,6 +49,10 @@ export class BeadTable {
     return this.extras.length ? leastThat((texel) => this.beadOf(texel + 1) > bead, this.texels) : bead;
   }
 
+  /** In the mean, mm. */
+  get layerHeight() {
+    return (65535 * this.grain[2]) / Math.max(1, this.layerOf(this.texels - 1));
+  }
   layerOf(texel) {
     return this.runs[4 * (this.words[4 * texel + 3] >>> 13) + 2];
   }

@@ -9,6 +9,9 @@ export const size = (a) => Math.hypot(...a);
 export const unit = (a) => times(a, 1 / (size(a) || 1));
 const rounded = (a) => a.map((v) => Math.round(v * 1e4) / 1e4); // a tenth of a micrometre, and short in a command line
 
+/** Of a box [x0, y0, z0, x1, y1, z1]. */
+export const middleOf = (box) => times(add(box.slice(0, 3), box.slice(3)), 0.5);
+
 export class OrbitCamera {
   target = [0, 0, 0];
   distance = 300;
@@ -66,9 +69,9 @@ export class OrbitCamera {
     this.distance = Math.max(0.05, Math.min(1e5, this.distance * factor));
   }
 
-  /** All of the box [x0, y0, z0, x1, y1, z1], from the same side. */
+  /** All of a box, from the same side. */
   fit(box, aspect) {
-    this.target = [(box[0] + box[3]) / 2, (box[1] + box[4]) / 2, (box[2] + box[5]) / 2];
+    this.target = middleOf(box);
     const slope = Math.tan((this.fov * Math.PI) / 360) * 0.92;
     let distance = 0;
     for (let n = 0; n < 8; ++n) {
@@ -94,7 +97,13 @@ export function project(camera, aspect, point) {
 export function handleInput(element, { orbit, moved, clicked, key }) {
   const pointers = new Map();
   let travelled = 0;
-  let wheelTimer = 0;
+  let timer = 0;
+  /** It has moved by a step, of which more may follow. */
+  const step = () => {
+    moved(true);
+    clearTimeout(timer);
+    timer = setTimeout(() => moved(false), 180);
+  };
   const place = (event) => [event.clientX, event.clientY];
   const spread = () => {
     const [a, b] = [...pointers.values()];
@@ -148,9 +157,7 @@ export function handleInput(element, { orbit, moved, clicked, key }) {
     const away = (1 - factor) / factor; // what is under the pointer stays there
     orbit().zoom(factor);
     orbit().pan((-away * (event.clientX - area.left - area.width / 2)) / area.height, (away * (event.clientY - area.top - area.height / 2)) / area.height);
-    moved(true);
-    clearTimeout(wheelTimer);
-    wheelTimer = setTimeout(() => moved(false), 180);
+    step();
   }, { passive: false });
 
   const turns = { ArrowLeft: [1, 0], ArrowRight: [-1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] };
@@ -163,8 +170,6 @@ export function handleInput(element, { orbit, moved, clicked, key }) {
     else if (event.key === "-") orbit().zoom(1 / 0.9);
     else return key(event) && event.preventDefault(); // else it would be typed where the focus goes
     event.preventDefault();
-    moved(true);
-    clearTimeout(wheelTimer);
-    wheelTimer = setTimeout(() => moved(false), 180);
+    step();
   });
 }

@@ -20,6 +20,11 @@ export class Connection extends EventTarget {
     if (this.ready) this.#socket.send(JSON.stringify(message));
   }
 
+  /** take(message) for each message of a type, or event of the connection. */
+  on(type, take) {
+    this.addEventListener(type, ({ detail }) => take(detail));
+  }
+
   /** For good. */
   close() {
     this.#closed = true;

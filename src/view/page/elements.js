@@ -2,6 +2,9 @@
 
 export const byId = (id) => document.getElementById(id);
 
+/** Pixels of a picture by those of CSS; more than two are not seen. */
+export const pixelRatio = () => Math.min(2, devicePixelRatio || 1);
+
 export function element(tag, properties = {}, ...children) {
   const made = Object.assign(document.createElement(tag), properties);
   made.append(...children);

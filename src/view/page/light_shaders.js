@@ -5,7 +5,7 @@ export const screenVertices = `${HEAD}
 void main() { gl_Position = vec4(vec2(gl_VertexID & 1, gl_VertexID >> 1) * 4.0 - 1.0, 0.0, 1.0); }`;
 
 // The backdrop and the bed's light, and how bright that looks.
-const STAGE = `
+export const STAGE = `
 uniform vec3 bed_albedo, horizon, zenith;
 uniform vec2 turned;        // cosine and sine by which the light has turned with the camera
 uniform float brightest, scale, bed_z;
@@ -48,7 +48,7 @@ out vec3 ray;
 void main() {
   ivec2 at = ivec2(gl_VertexID % ${GRID[0] + 1}, gl_VertexID / ${GRID[0] + 1});
   vec2 place = 2.0 * vec2(at) / vec2(${GRID[0]}, ${GRID[1]}) - 1.0;
-  gl_Position = vec4(place, 0.0, 1.0);
+  gl_Position = vec4(place, -1.0, 1.0); // as far as a depth can be
   ray = forward + place.x * slope.x * right + place.y * slope.y * up;
   vec3 behind = backdrop(ray);
   float to_bed = has_bed && ray.z < 0.0 ? bed_z / ray.z : 1e30;
@@ -56,49 +56,66 @@ void main() {
   shade = display(mix(bed, behind, to_bed < 1e29 ? bedFade(ray.xy * to_bed) : 1.0));
 }`;
 export const backFragments = `${HEAD}
+in vec3 shade;
+out vec4 color;
+void main() { color = vec4(shade, 1.0); }`;
+/** The same with the lines of a bed that has a grid. */
+export const gridFragments = `${HEAD}
 uniform vec2 slope, size;
 uniform vec3 eye;
 uniform vec2 corner;        // of the table: the bed's lines count from the origin
-uniform float bed_z, lines;
+uniform float bed_z;
 uniform vec4 fade;
 in vec3 shade;
 in vec3 ray;
 out vec4 color;
 void main() {
   color = vec4(shade, 1.0);
-  for (bool with_lines = lines > 0.0 && ray.z < 0.0; with_lines; with_lines = false) {
-    float depth = bed_z / ray.z;
-    vec2 mm = ray.xy * depth + eye.xy + corner;
-    float pixel = depth * slope.y / size.y * 2.0;
-    vec2 fine = abs(mm - 10.0 * round(mm / 10.0)), broad = abs(mm - 50.0 * round(mm / 50.0));
-    float a = max(1.0 - min(fine.x, fine.y) / max(0.2, pixel), 0.0) * clamp(1.0 - pixel / 3.0, 0.0, 1.0);
-    float b = max(1.0 - min(broad.x, broad.y) / max(0.4, 1.5 * pixel), 0.0) * clamp(1.0 - pixel / 15.0, 0.0, 1.0);
-    color.rgb = mix(color.rgb, vec3(0.62), 0.6 * max(a, b) * (1.0 - clamp(length(ray.xy * depth - fade.xy) / fade.w, 0.0, 1.0)));
-  }
+  if (ray.z >= 0.0) return;
+  float depth = bed_z / ray.z;
+  vec2 mm = ray.xy * depth + eye.xy + corner;
+  float pixel = depth * slope.y / size.y * 2.0;
+  vec2 fine = abs(mm - 10.0 * round(mm / 10.0)), broad = abs(mm - 50.0 * round(mm / 50.0));
+  float a = max(1.0 - min(fine.x, fine.y) / max(0.2, pixel), 0.0) * clamp(1.0 - pixel / 3.0, 0.0, 1.0);
+  float b = max(1.0 - min(broad.x, broad.y) / max(0.4, 1.5 * pixel), 0.0) * clamp(1.0 - pixel / 15.0, 0.0, 1.0);
+  color.rgb = mix(color.rgb, vec3(0.62), 0.6 * max(a, b) * (1.0 - clamp(length(ray.xy * depth - fade.xy) / fade.w, 0.0, 1.0)));
 }`;
 
-/** The light on the beads that the first pass has found; `fine`: also their shadow on the bed about them. */
-export const lightFragments = (fine) => `${HEAD}
-${fine ? "#define FINE" : ""}
+/** The colour of a bead under that light. */
+export const COLORED = `
+uniform usampler2D colors;  // by texel, places of the palette
+uniform sampler2D palette;
+uniform bool colored, as_normals;
+uniform vec3 albedo;
+vec3 bodyOf(uint n) {
+  if (!colored) return albedo;
+  uint place = row(colors, n).x;
+  return texelFetch(palette, ivec2(place & 1023u, place >> 10u), 0).rgb;
+}
+// Grooves between layers, and what is far off, keep some off.
+vec3 shadeOf(vec3 body, vec3 normal, vec3 ray, float open) {
+  if (as_normals) return 0.5 * normal + 0.5;
+  return display(open * brightest * (body * lightAt(normal).x + 0.04 * lightAt(reflect(ray, normal)).y));
+}
+float openness(vec3 normal) { return 0.7 + 0.2 * abs(normal.z); }`;
+
+/** The light on the beads that the first pass has found, and their shadow on the bed about them. */
+export const lightFragments = `${HEAD}
 ${STAGE}
+${COLORED}
 uniform vec3 right, up, forward;
 uniform vec2 slope;         // tangents of half the angles of the picture
 uniform usampler2D beads, runs;
 uniform usampler2D normals;
 uniform usampler2D ids;
 uniform sampler2D depths;
-uniform usampler2D colors;  // by texel, places of the palette
-uniform sampler2D palette;
-uniform bool colored, as_normals;
 uniform vec2 size;
-uniform vec3 albedo;
 uniform float reach;        // mm: what is farther away keeps no light off
 out vec4 color;
 
 vec3 rayAt(vec2 pixel) { vec2 at = (2.0 * pixel / size - 1.0) * slope; return forward + at.x * right + at.y * up; }
 float depthAt(ivec2 pixel) { return ${NEAR} / max(texelFetch(depths, clamp(pixel, ivec2(0), ivec2(size) - 1), 0).x, 1e-9); }
 
-#ifdef FINE
 // The surface over a few pixels: where layers are thinner than those, their normals would flicker.
 vec3 broadNormal(ivec2 pixel, float depth, vec3 normal) {
   vec3 here = rayAt(vec2(pixel) + 0.5) * depth;
@@ -127,7 +144,6 @@ float hidden(ivec2 pixel, vec3 here, vec3 normal, float depth) {
   }
   return min(sum * 0.2, 0.85);
 }
-#endif
 
 // Software runs both sides of a branch for all pixels, but no loop that none enters: hence loops of one round.
 void main() {
@@ -137,16 +153,8 @@ void main() {
   color = vec4(0.0);
   for (bool bead = id != 0u; bead; bead = false) {
     vec3 normal = unpacked(texelFetch(normals, pixel, 0).x);
-    color = vec4(0.5 * normal + 0.5, 1.0);
-    if (as_normals) break;
-    vec3 body = albedo;
-    if (colored) {
-      uint place = row(colors, id - 1u).x;
-      body = texelFetch(palette, ivec2(place & 1023u, place >> 10u), 0).rgb;
-    }
     vec3 shading = normal;
-    float open = 0.7 + 0.2 * abs(normal.z);  // grooves between layers, and what is far off
-#ifdef FINE
+    float open = openness(normal);
     float depth = depthAt(pixel);
     uint word = row(beads, id - 1u).w;
     float thin = min(float(word & 4095u) * 0.004, uintBitsToFloat(row(runs, word >> 13u).x));
@@ -154,14 +162,10 @@ void main() {
     float pixel_mm = depth * slope.y / size.y * 2.0;
     shading = normalize(mix(normal, broad, 0.9 * smoothstep(0.25, 0.9, pixel_mm / thin)));
     open *= 1.0 - hidden(pixel, ray * depth, broad, depth);
-#endif
-    vec3 sum = brightest * (body * lightAt(shading).x + 0.04 * lightAt(reflect(normalize(ray), shading)).y);
-    color.rgb = display(open * sum);
+    color = vec4(shadeOf(bodyOf(id - 1u), as_normals ? normal : shading, normalize(ray), open), 1.0);
   }
-#ifdef FINE
   for (bool bed = id == 0u && has_bed && !as_normals && ray.z < 0.0; bed; bed = false) {
     float depth = bed_z / ray.z;
     color.a = hidden(pixel, ray * depth, vec3(0.0, 0.0, 1.0), depth) * (1.0 - bedFade(ray.xy * depth));
   }
-#endif
 }`;

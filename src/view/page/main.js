@@ -1,9 +1,9 @@
 // The page of vdbview: the picture, and what changes it.
 import { Answer, clock } from "./answer.js";
-import { OrbitCamera, handleInput, sub, unit } from "./camera.js";
+import { OrbitCamera, handleInput, middleOf, sub, unit } from "./camera.js";
 import { Connection } from "./connection.js";
 import { Controls } from "./controls.js";
-import { byId, setOptions } from "./elements.js";
+import { byId, pixelRatio, setOptions } from "./elements.js";
 import { Finder } from "./finder.js";
 import { MotionPanel } from "./motion_panel.js";
 import { KINDS } from "./move_table.js";
@@ -27,6 +27,7 @@ const sentAt = new Map(); // times by number
 let viewFrom = 0; // the first number that the named view has
 let generation; // of the input's file
 let latest = 0; // the number that the last picture answers
+let awaited = false; // a finished picture
 let shownSize = [0, 0]; // of the last view that was asked for
 /** For measurements and tests: one entry a picture, the number of the last view, and of each kind of moves how many are shown. */
 const log = (window.vdbviewLog = []);
@@ -68,8 +69,7 @@ const answer = new Answer(byId("answer"), byId("marks"));
 // ---------------------------------------------------------------- asking
 
 function pixels() {
-  const ratio = Math.min(2, devicePixelRatio || 1);
-  const side = (length) => Math.max(16, Math.min(4096, Math.round(length * ratio)));
+  const side = (length) => Math.max(16, Math.min(4096, Math.round(length * pixelRatio())));
   return [side(picture.clientWidth), side(picture.clientHeight)];
 }
 
@@ -89,7 +89,9 @@ function sendAsked() {
   motion.show();
   if (!connection.ready) return;
   sentAt.set(++number, performance.now());
-  if (!own.ready || !moving) connection.send({ type: "show", number, moving, own: own.table?.complete && !own.why, state: toMessage(state, shownSize) });
+  const stops = own.ready && moving; // the picture that the server is at
+  if (!stops || awaited) connection.send({ type: "show", number, moving, own: own.table?.complete && !own.why, state: toMessage(state, shownSize) });
+  awaited = !stops;
   if (!moving) history.replaceState(null, "", location.pathname + location.search + toFragment(state, file));
 }
 
@@ -151,15 +153,14 @@ function hold() {
   if (camera && box && latest >= viewFrom) turned();
 }
 
-const middle = () => [0, 1, 2].map((n) => (box[n] + box[n + 3]) / 2);
 /** The camera that turns, from where the last picture was seen. */
-const turned = () => (orbit ??= camera && box ? OrbitCamera.from(camera, middle()) : new OrbitCamera());
+const turned = () => (orbit ??= camera && box ? OrbitCamera.from(camera, middleOf(box)) : new OrbitCamera());
 
 // ---------------------------------------------------------------- pictures
 
 let [arrivedLast, drawnLast] = [0, 0]; // decoding may end in another order than it began
 
-connection.addEventListener("picture", async ({ detail }) => {
+connection.on("picture", async (detail) => {
   const arrived = performance.now();
   if (detail.kind === "saved") {
     connection.send({ type: "shown" });
@@ -183,13 +184,14 @@ connection.addEventListener("picture", async ({ detail }) => {
   latest = detail.number;
   document.body.classList.remove("stale");
   answer.draw(camera, aspect);
-  byId("command").textContent = `${detail.command} -o picture.png`;
+  tellCommand(detail);
   byId("loading").hidden = true;
   if (byId("trouble").dataset.of === "view") byId("trouble").hidden = true;
   const now = performance.now();
   record({ kind: detail.kind, number: detail.number, at: now, latency: now - (sentAt.get(detail.number) ?? now), decode: now - arrived, width: detail.width, height: detail.height, bytes: detail.file.size });
   for (const key of sentAt.keys()) if (key < detail.number) sentAt.delete(key);
   if (detail.kind === "final") {
+    if (detail.number === number) awaited = false;
     picture.dataset.final = detail.number;
     window.vdbviewFinal = detail.file;
   }
@@ -203,6 +205,7 @@ function record(entry) {
 
 // ---------------------------------------------------------------- what the server says
 
+const tellCommand = ({ command }) => (byId("command").textContent = `${command} -o picture.png`);
 const say = (text) => (byId("status").textContent = text);
 function trouble(text, of = "") {
   byId("trouble-text").textContent = text;
@@ -211,16 +214,16 @@ function trouble(text, of = "") {
   byId("loading").hidden = true;
 }
 
-const on = (type, take) => connection.addEventListener(type, ({ detail }) => take(detail));
-connection.addEventListener("open", () => {
+const on = (type, take) => connection.on(type, take);
+on("open", () => {
   if (byId("trouble").dataset.of === "connection") byId("trouble").hidden = true;
   document.body.dataset.connection = "open";
 });
-connection.addEventListener("gone", () => {
+on("gone", () => {
   document.body.dataset.connection = "gone";
   trouble("The server does not answer. It may have ended: start vdbview again. Trying to reconnect …", "connection");
 });
-connection.addEventListener("stranger", () => trouble("The server was started anew, and its page has another address: open the one that it prints.", "connection"));
+on("stranger", () => trouble("The server was started anew, and its page has another address: open the one that it prints.", "connection"));
 on("hello", (detail) => {
   if (wrong) trouble(wrong);
   wrong = "";
@@ -275,7 +278,7 @@ on("layers", (detail) => {
 on("program", (detail) => motion.setProgram(detail));
 on("found", (detail) => finder.take(detail));
 on("look", (detail) => {
-  byId("command").textContent = `${detail.command} -o picture.png`;
+  tellCommand(detail);
   if (detail.number !== number) return own.illuminate(detail);
   if (!orbit) camera = detail.camera;
   aspect = detail.width / detail.height;
@@ -367,6 +370,8 @@ async function copy(text, what) {
   }
 }
 
+const views = [...document.querySelectorAll("[data-view]")]; // in the order of their keys
+const help = () => byId("keys").showModal();
 const turning = { orbit: turned, moved: ask };
 handleInput(byId("second-beads"), { ...turning, clicked: () => {}, key: () => {} });
 handleInput(picture, {
@@ -380,7 +385,6 @@ handleInput(picture, {
     connection.send({ type: "inspect", number, x: Math.min(1, Math.max(0, x)), y: Math.min(1, Math.max(0, y)) });
   },
   key: (event) => {
-    const views = ["iso", "front", "back", "left", "right", "top", "bottom"];
     const last = state.layers[1] || controls.layerCount;
     const ofPrints = {
       t: () => motion.toggle("travels"), s: () => motion.toggle("seams"), l: () => byId("one-layer").click(), p: () => byId("play").click(),
@@ -388,18 +392,18 @@ handleInput(picture, {
       ",": () => motion.step(-1), ".": () => motion.step(1), "/": () => finder.open(),
     };
     const keys = {
-      f: fit, m: () => setMeasuring(!answer.measuring), escape: () => answer.clear(), "?": () => byId("keys").showModal(),
+      f: fit, m: () => setMeasuring(!answer.measuring), escape: () => answer.clear(), "?": help,
       ...(controls.layerCount > 0 && ofPrints),
     };
-    const act = event.key in views ? () => setView(views[event.key]) : keys[event.key.toLowerCase()];
+    const act = event.key in views ? () => views[event.key].click() : keys[event.key.toLowerCase()];
     act?.();
     return act !== undefined;
   },
 });
 
-for (const button of document.querySelectorAll("[data-view]")) button.addEventListener("click", () => setView(button.dataset.view));
+for (const button of views) button.addEventListener("click", () => setView(button.dataset.view));
 byId("fit").addEventListener("click", fit);
-byId("help").addEventListener("click", () => byId("keys").showModal());
+byId("help").addEventListener("click", help);
 picture.addEventListener("dblclick", () => (turns = true));
 byId("measure").addEventListener("click", () => setMeasuring(!answer.measuring));
 byId("trouble-close").addEventListener("click", () => (byId("trouble").hidden = true));

@@ -3,6 +3,7 @@ import { BeadRenderer } from "./bead_renderer.js";
 import { BeadTable } from "./bead_table.js";
 import { BED_TINTS, EXCLUDED_TINTS, bedLines } from "./bed.js";
 import { KINDS, MoveTable } from "./move_table.js";
+import { pixelRatio } from "./elements.js";
 import { Pace } from "./pace.js";
 import { cross, sub, unit } from "./camera.js";
 
@@ -14,6 +15,7 @@ export function cameraOf({ eye, look_at, fov }) {
 }
 
 const ALL = 0xffffffff;
+const STEP = 30; // ms of a picture at rest after which others may have their turn
 const tints = KINDS.map(([, hex]) => [1, 3, 5].map((n) => parseInt(hex.slice(n, n + 2), 16) / 255));
 
 export class OwnPicture extends EventTarget {
@@ -55,23 +57,22 @@ export class OwnPicture extends EventTarget {
 
   /** Takes from a connection what it draws. */
   listen(connection) {
-    const on = (type, take) => connection.addEventListener(type, ({ detail }) => take(detail, detail.file));
-    on("beads", (head, runs) => this.begin(head, runs));
-    on("bead-part", (part, bytes) => this.add(part, bytes));
-    on("no-beads", ({ text }) => this.refuse(text));
-    on("colors", ({ palette, values }, places) => this.paint(palette, values, places));
-    on("moves", (head) => this.beginMoves(head));
-    on("move-part", (part, bytes) => this.addMoves(part, bytes));
+    connection.on("beads", (head) => this.#begin(head));
+    connection.on("bead-part", (part) => this.#add(part));
+    connection.on("no-beads", ({ text }) => this.refuse(text));
+    connection.on("colors", (colors) => this.#paint(colors));
+    connection.on("moves", (head) => this.#beginMoves(head));
+    connection.on("move-part", (part) => this.#addMoves(part));
   }
-  begin(head, runs) {
+  #begin(head) {
     this.#stop("the beads are on their way");
-    this.table = new BeadTable(head, runs);
+    this.table = new BeadTable(head, head.file);
     this.moves = null;
     this.#look = this.#colors = this.#over = null;
   }
-  add({ generation }, bytes) {
+  #add({ generation, file }) {
     if (this.table === null || generation !== this.table.generation) return;
-    this.table.add(bytes);
+    this.table.add(file);
     if (this.table.complete) this.#start();
   }
   /** There will be none. */
@@ -80,13 +81,13 @@ export class OwnPicture extends EventTarget {
     this.#stop(why);
   }
   /** Of the program: travels and marks. */
-  beginMoves(head) {
+  #beginMoves(head) {
     this.moves = this.table?.complete && head.generation === this.table.generation ? new MoveTable(head, this.table) : null;
     if (head.count === 0) this.#takeMoves();
   }
-  addMoves({ generation }, bytes) {
+  #addMoves({ generation, file }) {
     if (this.moves?.generation !== generation) return;
-    this.moves.add(bytes);
+    this.moves.add(file);
     if (this.moves.complete) this.#takeMoves();
   }
   #takeMoves() {
@@ -102,9 +103,9 @@ export class OwnPicture extends EventTarget {
     this.#renderer?.lines.set("excluded", excluded.length ? { table: bedLines(excluded, 2), tints: EXCLUDED_TINTS } : null);
   }
   /** `values` of the attribute by colour. */
-  paint(palette, values, bytes) {
+  #paint({ palette, values, file }) {
     if (!this.table) return;
-    const places = new Uint16Array(bytes);
+    const places = new Uint16Array(file);
     this.#values = values;
     this.#colors = places.length ? [this.table.byTexel(places), palette] : [null, null];
     if (!this.#over) this.#renderer?.paint(...this.#colors);
@@ -180,22 +181,38 @@ export class OwnPicture extends EventTarget {
     renderer.resize(...size.map((side) => Math.max(1, Math.round(side * scale))));
     this.#select(state);
     this.#selectLines(state, scale);
-    renderer.fine = !moving;
-    this.#resting = { camera, state };
+    const { quick } = this.#pace;
+    this.#resting = { camera, state, quick };
     if (moving) return this.#drawMoving(camera, state);
-    const done = renderer.draw(camera, state, 1, true);
-    renderer.note();
-    if (done) return this.#tell("complete");
-    this.#frame = requestAnimationFrame(() => this.#goOn());
+    if (quick) renderer.drawQuick(camera, state); // stays until all beads are in the better one
+    this.#complete(true);
+  }
+  /** The picture at rest, by parts of its beads: what waits would hold up the next picture that moves. */
+  #complete(anew) {
+    const renderer = this.#renderer;
+    const { camera, state, quick } = this.#resting;
+    const began = performance.now();
+    let done = renderer.collect(camera, state, 1, anew);
+    for (renderer.finish(); !done && performance.now() - began < STEP; renderer.finish()) done = renderer.collect(camera, state, 1, false);
+    if (done || !quick) renderer.light(camera, state);
+    if (done || anew) renderer.note();
+    if (anew) this.#pace.rested(performance.now() - began);
+    this.#frame = done ? 0 : requestAnimationFrame(() => this.#complete(false));
+    if (done) this.#tell("complete");
   }
   #drawMoving(camera, state) {
     const began = performance.now();
     const renderer = this.#renderer;
-    renderer.draw(camera, state, 0, true);
+    const { quick } = this.#pace;
+    if (quick) renderer.drawQuick(camera, state);
+    else {
+      renderer.collect(camera, state, 0, true);
+      renderer.light(camera, state);
+    }
     const turn = this.#frames++ % 4;
     if (turn === 0) renderer.note();
-    else if (turn === 2) renderer.lookFor(camera, state, this.#pace.scale < 1 ? 8 : 32);
-    else if (this.#pace.scale < 1) renderer.finish();
+    else if (turn === 2) renderer.lookFor(camera, state, quick ? 8 : 32);
+    else if (quick) renderer.finish();
     else return;
     this.#pace.took(performance.now() - began);
   }
@@ -203,26 +220,16 @@ export class OwnPicture extends EventTarget {
   get size() {
     return this.#renderer.size;
   }
-  #goOn() {
-    this.#frame = 0;
-    const { camera, state } = this.#resting;
-    const done = this.#renderer.draw(camera, state, 2, false);
-    if (!done) return (this.#frame = requestAnimationFrame(() => this.#goOn()));
-    this.#renderer.note();
-    this.#tell("complete");
-  }
-
   /** The lines of the last picture alone, see LineRenderer. */
   lines() {
     return this.#renderer?.lines.alone() ?? null;
   }
   #selectLines(state, scale) {
     const { lines } = this.#renderer;
-    const ratio = Math.min(2, devicePixelRatio || 1);
     const kinds = KINDS.reduce((bits, [name], n) => bits | (state.also.includes(name) ? 1 << n : 0), 0);
     const end = this.#range[1] < this.table.texels ? this.table.beadOf(this.#range[1]) : ALL;
     this.#shown = { layers: [state.layers[0] || 1, state.layers[1] || ALL >>> 4], end };
-    if (lines.sets.has("moves")) lines.set("moves", { ...this.#shown, kinds, point: 7 * ratio * scale });
+    if (lines.sets.has("moves")) lines.set("moves", { ...this.#shown, kinds, point: 7 * pixelRatio() * scale });
     const bed = { layers: [0, 0], end: ALL, kinds: state.also.some((name) => name.startsWith("bed")) ? 3 : 0, point: 0 };
     for (const name of ["bed", "excluded"]) if (lines.sets.has(name)) lines.set(name, bed);
   }

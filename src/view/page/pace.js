@@ -1,24 +1,37 @@
-// How large pictures are while a view moves: as large as the canvas, or, where that takes too long, as they can be in the
-// time of a frame.
+// How pictures are drawn while a view moves: as at rest, or, where that takes too long, quickly, and as large as they can be in
+// the time of a frame.
 
-const SLOW = 80; // ms of a picture of full size from which on it is made smaller
-const GOAL = 28; // ms of a smaller one
+const SLOW = 80; // ms of a picture as at rest from which on they are drawn quickly
+const GOAL = 24; // ms of a quick one
+const START = 0.5; // of each side, of the first quick one
+const FAST = 5; // ms of a quick one of full size from which on they are drawn as at rest again
 const STEPS = 16; // of a side
 const LEAST = 4 / STEPS;
 
 export class Pace {
   scale = 1; // of each side
-  #slow = 0; // pictures of full size, one after the other
+  quick = false;
+  #slow = 0; // pictures as at rest, one after the other
+  #last = 0; // ms of the last quick one
 
-  /** The last picture took so long, ms. */
+  /** The beginning of a picture at rest took so long, ms. */
+  rested(time) {
+    if (this.quick) return;
+    this.#slow = time > SLOW ? this.#slow + 1 : 0;
+    this.quick = this.#slow >= 2; // a program may have been compiled
+    if (this.quick) this.scale = START;
+  }
+  /** A moving picture took so long, ms. */
   took(time) {
-    if (this.scale === 1) {
-      this.#slow = time > SLOW ? this.#slow + 1 : 0;
-      if (this.#slow < 2) return; // a program may have been compiled
-    }
-    // The time goes with the pixels at most, so that this is the least that fits; it rises slowly.
+    if (!this.quick) return this.rested(time);
+    this.quick = this.scale < 1 || time > FAST;
+    this.#slow = 0;
+    this.#fit(Math.min(time, this.#last)); // it gets smaller if two in a row were slow
+    this.#last = time;
+  }
+  // The time goes with the pixels at most, so that this is the least that fits; it rises slowly.
+  #fit(time) {
     const fits = Math.floor(this.scale * Math.sqrt(GOAL / Math.max(time, 0.1)) * STEPS) / STEPS;
     this.scale = Math.max(LEAST, Math.min(1, fits > this.scale ? this.scale + 1 / STEPS : Math.max(fits, this.scale / 2)));
-    this.#slow = 0;
   }
 }

@@ -62,21 +62,20 @@ export class SecondPrint {
     const own = this.#own;
     own.refuse("the beads are not here yet");
     own.listen(connection);
-    const on = (type, take) => connection.addEventListener(type, ({ detail }) => take(detail));
     let generation;
-    on("hello", () => {
+    connection.on("hello", () => {
       connection.send({ type: "open", file: Number(file) });
       connection.send({ type: "beads" });
     });
-    on("facts", ({ facts }) => {
+    connection.on("facts", ({ facts }) => {
       if (generation !== undefined && generation !== facts.generation) connection.send({ type: "beads" });
       generation = facts.generation;
     });
-    on("no-beads", ({ text }) => this.#say(`It can't be shown here: ${text}.`));
-    on("look", (look) => own.illuminate(look));
-    on("loading", ({ step }) => own.ready || this.#say(`${step} …`));
-    on("failed", ({ text }) => this.#say(text));
-    on("picture", () => connection.send({ type: "shown" }));
+    connection.on("no-beads", ({ text }) => this.#say(`It can't be shown here: ${text}.`));
+    connection.on("look", (look) => own.illuminate(look));
+    connection.on("loading", ({ step }) => own.ready || this.#say(`${step} …`));
+    connection.on("failed", ({ text }) => this.#say(text));
+    connection.on("picture", () => connection.send({ type: "shown" }));
     this.changed();
   }
 

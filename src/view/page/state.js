@@ -43,17 +43,22 @@ export function toFragment(state, file) {
   return Object.keys(changed).length ? "#" + encodeURIComponent(JSON.stringify(changed)) : "";
 }
 
-// Whether a value is of the kind of another; null stands for a number, a plane or a switch that is left open.
-function fits(key, value, first) {
-  if (key === "camera") return isCamera(value);
-  if (key === "clip") return value === null || (Array.isArray(value) && value.length === 4 && value.every(Number.isFinite));
-  if (key === "color_range") return value === null || (Array.isArray(value) && value.length === 2 && value.every(Number.isFinite));
-  if (key === "layers") return Array.isArray(value) && value.length === 2 && value.every(Number.isInteger);
-  if (["hidden_features", "also"].includes(key)) return Array.isArray(value) && value.every((each) => typeof each === "string");
-  if (key === "beads") return value === null || (Number.isInteger(value) && value > 0);
-  if (first === null) return value === null || typeof value === (key === "bed" ? "boolean" : "number");
-  return typeof value === typeof first && Array.isArray(value) === Array.isArray(first);
-}
+const listOf = (each, count) => (value) => Array.isArray(value) && value.length === (count ?? value.length) && value.every(each);
+const orOpen = (fits) => (value) => value === null || fits(value); // null: it is left open
+const isText = (value) => typeof value === "string";
+/** Which values fit a key; of others, those of the kind of the initial one. */
+const FITS = {
+  camera: isCamera,
+  clip: orOpen(listOf(Number.isFinite, 4)),
+  color_range: orOpen(listOf(Number.isFinite, 2)),
+  layers: listOf(Number.isInteger, 2),
+  hidden_features: listOf(isText),
+  also: listOf(isText),
+  beads: orOpen((value) => Number.isInteger(value) && value > 0),
+  bed: orOpen((value) => typeof value === "boolean"),
+  exposure: orOpen(Number.isFinite),
+};
+const fits = (key, value, first) => FITS[key]?.(value) ?? (typeof value === typeof first && Array.isArray(value) === Array.isArray(first));
 function isCamera(value) {
   const point = (p) => Array.isArray(p) && p.length === 3 && p.every(Number.isFinite);
   if (value === null || typeof value !== "object" || !Number.isFinite(value.fov)) return false;

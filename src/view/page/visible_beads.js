@@ -1,11 +1,12 @@
 // Which beads a picture needs. Most beads are hidden by others, and those that were seen are seen again in the next
 // picture: so a picture of a moving view draws the beads that were seen, and of others those of which a point is not behind
-// its surface. A view at rest adds all beads, in parts, until none is missing.
+// its surface. A quick one draws coarse beads instead, see coarse_beads.js. A view at rest adds all beads, in parts, until
+// none is missing.
 
-const PART = 16384; // beads
+const PART = 4096; // beads
 // Looks after which a bead that is not seen is left out: one that was seen, and one that was expected.
-const FORGET = 12;
-const DOUBT = 2;
+const FINE = { forget: 12, doubt: 2 };
+const COARSE = { forget: 4, doubt: 1 };
 
 export class VisibleBeads {
   constructor(texels) {
@@ -14,7 +15,8 @@ export class VisibleBeads {
     this.list = new Uint32Array(Math.min(texels, 4096));
     this.count = 0;
     this.changedFrom = 0; // the list's texture is right up to here
-    this.look = FORGET + 1;
+    this.look = FINE.forget + 1;
+    this.coarse = null; // CoarseBeads that stand for the others
     this.restart();
   }
 
@@ -35,19 +37,35 @@ export class VisibleBeads {
 
   #sought = 0;
 
-  /** The next `most` beads of a round through all, [first, count]. */
+  /** The next `most` beads of a round through all, or through all coarse ones, [first, count]. */
   sought(most) {
-    const first = this.#sought >= this.texels ? 0 : this.#sought;
+    const all = this.coarse ? this.coarse.texels.length : this.texels;
+    const first = this.#sought >= all ? 0 : this.#sought;
     this.#sought = first + most;
-    return [first, Math.min(most, this.texels - first)];
+    return [first, Math.min(most, all - first)];
   }
 
+  /** From here on these stand for the others; null: each for itself. */
+  standFor(coarse) {
+    this.coarse = coarse;
+    const old = this.list.slice(0, this.count);
+    this.count = this.changedFrom = 0;
+    this.seenAt.fill(0);
+    for (const n of old) this.#add(n, this.look);
+  }
+
+  get #looks() {
+    return this.coarse ? COARSE : FINE;
+  }
   /** Beads that may be seen next, by texel. */
   expect(first, end) {
-    for (let n = first; n < end; ++n) if (this.seenAt[n] === 0) this.#add(n, this.look - FORGET + DOUBT);
+    const { forget, doubt } = this.#looks;
+    for (let n = first; n < end; ++n) if (this.seenAt[n] === 0) this.#add(n, this.look - forget + doubt);
   }
 
-  #add(n, look) {
+  #add(texel, look) {
+    const n = this.coarse ? this.coarse.ofTexel[texel] : texel;
+    if (n === 0xffffffff) return;
     if (this.seenAt[n] === 0) {
       if (this.count === this.list.length) {
         const longer = new Uint32Array(Math.min(this.texels, 2 * this.list.length));
@@ -56,7 +74,7 @@ export class VisibleBeads {
       }
       this.list[this.count++] = n;
     }
-    this.seenAt[n] = look;
+    this.seenAt[n] = Math.max(this.seenAt[n], look);
   }
 
   /** The pixels of a picture: texel + 1, or 0. */
@@ -68,17 +86,18 @@ export class VisibleBeads {
       last = id;
       if (id !== 0) this.#add(id - 1, this.look);
     }
-    if (++this.look % DOUBT !== 0) return;
+    const { forget, doubt } = this.#looks;
+    if (++this.look % doubt !== 0) return;
     let kept = 0;
     for (let n = 0; n < this.count; ++n) {
       const texel = this.list[n];
-      if (this.look - this.seenAt[texel] < FORGET) this.list[kept++] = texel;
+      if (this.look - this.seenAt[texel] < forget) this.list[kept++] = texel;
       else this.seenAt[texel] = 0;
     }
     this.count = kept;
     this.changedFrom = 0;
     if (this.look < 65000) return;
-    for (let n = 0; n < kept; ++n) this.seenAt[this.list[n]] = FORGET;
-    this.look = FORGET + 1;
+    for (let n = 0; n < kept; ++n) this.seenAt[this.list[n]] = FINE.forget;
+    this.look = FINE.forget + 1;
   }
 }

@@ -1,0 +1,50 @@
+// Beads that stand for others where those are smaller than pixels: one layer of several, and one straight bead for what goes on
+// from it nearly straight. Numbers, no drawing.
+
+const NONE = 0xffffffff;
+const MOST = 64; // beads that one stands for
+
+export class CoarseBeads {
+  /** One of `stride` layers, and within `tolerance`, mm. */
+  constructor(table, stride, tolerance) {
+    Object.assign(this, { stride, tolerance });
+    this.ofTexel = new Uint32Array(table.texels).fill(NONE); // which one stands for it
+    this.ends = new Uint32Array(table.texels); // the last texel that one stands for
+    const texels = new Uint32Array(table.texels);
+    let count = 0;
+    for (let n = 0; n < table.texels; ++n) {
+      const end = table.layerOf(n) % stride === 0 ? lastOf(table, n, tolerance) : n;
+      if (table.layerOf(n) % stride === 0) {
+        texels[count++] = n;
+        this.ofTexel.fill(n, n, end + 1);
+        this.ends[n] = end;
+      }
+      n = table.hasExtra(end) ? end + 1 : end;
+    }
+    this.texels = texels.slice(0, count); // of those that stand for others
+  }
+}
+
+/** The last of the beads from a texel on that lie within a tolerance of one straight bead. */
+function lastOf(table, first, tolerance) {
+  const { words, grain } = table;
+  if (table.hasExtra(first)) return first;
+  const at = (word, axis) => (axis ? word >>> 16 : word & 65535) * grain[axis];
+  const [x, y] = [at(words[4 * first], 0), at(words[4 * first], 1)];
+  const tags = words[4 * first + 3];
+  let last = first;
+  let length = 0;
+  for (let n = first; n - first < MOST; ++n) {
+    const word = words[4 * n + 3];
+    if (n >= table.texels || word >>> 13 !== tags >>> 13 || word & 4096 || Math.abs((word & 4095) - (tags & 4095)) > 25) break;
+    if (n > first && (words[4 * n] !== words[4 * n - 3] || (words[4 * n + 2] & 65535) !== words[4 * n - 2] >>> 16)) break; // it does not go on
+    const [dx, dy] = [at(words[4 * n + 1], 0) - x, at(words[4 * n + 1], 1) - y];
+    const chord = Math.hypot(dx, dy);
+    if (chord < length) break; // it turns back
+    for (let k = first; k < n; ++k)
+      if (Math.abs((at(words[4 * k + 1], 0) - x) * dy - (at(words[4 * k + 1], 1) - y) * dx) > tolerance * chord) return last;
+    length = chord;
+    last = n;
+  }
+  return last;
+}

@@ -1,0 +1,90 @@
+// The shaders of beads for moving pictures without a GPU: each bead is a flat ribbon that faces the eye, shaded at its
+// middle and its edges. A pixel costs a few operations there, not a ray, and those behind others are left out unshaded.
+import { HEAD, NEAR, bead } from "./bead_shaders.js";
+import { COLORED, STAGE } from "./light_shaders.js";
+
+/** Ribbons of a bead: parts of its arc. */
+export const piecesOf = (kinds) => (kinds.arcs ? 8 : 1);
+
+export const quickVertices = (kinds) => `${HEAD}
+${bead(kinds)}
+${STAGE}
+${COLORED}
+uniform vec2 size;          // pixels
+uniform usampler2D ends;    // the last texel that a bead stands for
+uniform float least;        // mm: half of how wide they are at least
+out vec3 edge;              // colours
+flat out vec3 middle;
+out float across;           // -1 to 1
+flat out float level;       // up to where the ribbon has the colour of its middle
+flat out uint id;
+// How far a bead reaches from its path.
+float reach(Bead b, float half_flat, vec3 way) { return half_flat * length(way.xy) + b.side * abs(way.z) + b.radius; }
+void main() {
+  gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
+  uint n = chosen(uint(gl_VertexID) / ${4 * piecesOf(kinds)}u);
+  id = n + 1u;
+  if (!isShown(n)) return;
+  Bead b = beadAt(n);
+  float begin = 0.0, end = 1.0;
+#ifdef ARCS
+  int piece = gl_VertexID >> 2 & 7;
+  if (b.arc.z > 0.0) {
+    begin = float(piece) / 8.0;
+    end = begin + 0.125;
+  } else if (piece > 0) return;
+#endif
+  vec3 from = pointOf(b, begin), to = pointOf(b, end);
+  uint last = min(row(ends, n).x, texels.y - 1u);
+  if (last > n) {
+    uvec4 w = row(beads, last);
+    to.xy = vec2(w.y & 65535u, w.y >> 16u) * grain.xy - eye.xy;
+    to.z += (float(w.z >> 16u) - float(row(beads, n).z >> 16u)) * grain.z;
+  }
+  float past_from = dot(cut.xyz, from) - cut.w, past_to = dot(cut.xyz, to) - cut.w;
+  if (cut.xyz != vec3(0.0) && max(past_from, past_to) > 0.0) {
+    if (min(past_from, past_to) > 0.0) return;
+    vec3 border = mix(from, to, past_from / (past_from - past_to));
+    if (past_from > 0.0) from = border;
+    else to = border;
+  }
+  vec3 center = 0.5 * (from + to);
+  vec3 view = normalize(center);
+  vec3 side_way = cross(to - from, view);
+  bool end_on = dot(side_way, side_way) < 1e-8;
+  side_way = end_on ? up : normalize(side_way);
+  vec3 along_path = end_on ? right : normalize(to - from);
+  vec3 along = cross(view, side_way);
+  vec2 at = vec2(gl_VertexID & 1, gl_VertexID >> 1 & 1) * 2.0 - 1.0;
+  float half_flat = at.x < 0.0 ? b.flat0 : b.flat1;
+  float wide = reach(b, half_flat, side_way);
+  float drawn = max(wide, max(least, 1.5 * dot(center, forward) * slope.y / size.y)); // at least three quarters of a pixel
+  vec3 p = at.x < 0.0 ? from : to;
+  // Ends are round: a straight one of the same area is nearer.
+  p += along * at.x * 0.8 * reach(b, half_flat, along) + side_way * at.y * drawn - view * reach(b, half_flat, view);
+  float depth = dot(p, forward);
+  gl_Position = vec4(dot(p, right) / slope.x, dot(p, up) / slope.y, 2.0 * ${NEAR} - depth, depth);
+  // Of its round sides one sees most above other layers, of its flats what is level.
+  vec3 facing = cross(side_way, along_path);
+  facing *= sign(-dot(facing, view) + 1e-9);
+  facing = normalize(vec3(b.radius * facing.xy, (0.3 * b.radius + half_flat) * facing.z));
+  across = at.y;
+  level = half_flat * length(side_way.xy) / wide;
+  vec3 body = bodyOf(n); // which the surroundings darken by about 0.85
+  middle = shadeOf(body, facing, view, 0.85 * openness(facing));
+  vec3 beside = normalize(at.y * side_way + 0.5 * facing);
+  edge = mix(middle, shadeOf(body, beside, view, 0.85 * openness(beside)), wide / drawn); // no grain of what is smaller than that
+}`;
+export const quickFragments = `${HEAD}
+in vec3 edge;
+flat in vec3 middle;
+in float across;
+flat in float level;
+flat in uint id;
+layout(location = 0) out vec4 color;
+layout(location = 1) out uint bead;
+void main() {
+  float t = max(abs(across) - level, 0.0) / (1.001 - level);
+  color = vec4(mix(middle, edge, t * t), 1.0);
+  bead = id;
+}`;
