@@ -88,8 +88,7 @@ void describeStated(const Toolpath& toolpath, fmt::memory_buffer& out) {
 void describeColors(const Toolpath& toolpath, fmt::memory_buffer& out) {
     std::vector<std::string> parts;
     const auto add = [&](std::size_t tool, const Rgb& color, bool stated, const std::string& since) {
-        parts.push_back(fmt::format("T{} #{:02X}{:02X}{:02X}{}{}", tool, color[0], color[1], color[2],
-                                    stated ? "" : " (not stated)", since));
+        parts.push_back(fmt::format("T{} {}{}{}", tool, colorText(color), stated ? "" : " (not stated)", since));
     };
     for (std::size_t tool = 0; tool < toolpath.tool_colors.size(); ++tool) {
         if (!toolpath.tool_colors[tool] || !(at(toolpath.filament_by_tool, tool) > 0)) continue;

@@ -76,7 +76,7 @@ convert(gcode("two_tone.gcode"), "-o", out, "--voxel-size", "0.15", "--grids", "
 check("vec3s" not in run("vdb_print", "-l", out), "  not with --grids surface")
 convert(gcode("tile.gcode"), "-o", out)
 listing = run("vdb_print", "-l", out)
-check("filament_color: #D8563B" in listing and "vec3s" not in listing, "one color: said of the surface")
+check("filament_color: #d8563b" in listing and "vec3s" not in listing, "one color: said of the surface")
 
 # Meshes: color of their points, and nothing else of grids.
 ply = os.path.join(FOLDER, "part.ply")

@@ -4,6 +4,7 @@
 #include "export/mesh/three_mf_file.h"
 #include "export/mesh_file.h"
 #include "gcode/slicer/bead_colors.h"
+#include "gcode/toolpath/color.h"
 
 #include <fmt/format.h>
 
@@ -70,12 +71,12 @@ std::vector<exporter::MeshMaterial> materialsOf(const gcode::Toolpath& toolpath,
     std::vector<exporter::MeshMaterial> materials;
     materials.reserve(stated.size());
     for (const gcode::StatedColor& color : stated) {
-        const auto& [red, green, blue] = *color.color;
         const auto of_tool = std::count_if(stated.begin(), stated.end(), [&color](const gcode::StatedColor& other) {
             return other.tool == color.tool;
         });
-        materials.push_back({of_tool > 1 ? fmt::format("tool_{}_{:02x}{:02x}{:02x}", color.tool, red, green, blue)
-                                         : fmt::format("tool_{}", color.tool),
+        materials.push_back({of_tool > 1
+                                 ? fmt::format("tool_{}_{}", color.tool, gcode::colorText(*color.color).substr(1))
+                                 : fmt::format("tool_{}", color.tool),
                              *color.color});
     }
     return materials;

@@ -1,6 +1,7 @@
 #include "convert/toolpath_report.h"
 
 #include "gcode/summary.h"
+#include "gcode/toolpath/color.h"
 
 #include <string>
 #include <utility>
@@ -30,10 +31,8 @@ Json describeTools(const gcode::Toolpath& toolpath) {
         if (!(toolpath.filament_by_tool[tool] > 0)) continue;
         Json entry = {{"tool", tool}, {"filament_mm", toolpath.filament_by_tool[tool]}, {"footer_mm", nullptr}};
         if (tool < toolpath.footer_by_tool.size()) entry["footer_mm"] = toolpath.footer_by_tool[tool];
-        if (tool < toolpath.tool_colors.size() && toolpath.tool_colors[tool]) {
-            const auto& [red, green, blue] = *toolpath.tool_colors[tool];
-            entry["color"] = fmt::format("#{:02x}{:02x}{:02x}", red, green, blue);
-        }
+        if (tool < toolpath.tool_colors.size() && toolpath.tool_colors[tool])
+            entry["color"] = gcode::colorText(*toolpath.tool_colors[tool]);
         tools.push_back(std::move(entry));
     }
     return tools;

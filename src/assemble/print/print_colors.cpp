@@ -51,8 +51,7 @@ PrintColors colorsOf(const gcode::Toolpath& toolpath, std::span<const std::uint3
             colors.some_unstated = true;
             continue;
         }
-        const gcode::Rgb& c = *stated.color;
-        add(colors, fmt::format("#{:02x}{:02x}{:02x}", c[0], c[1], c[2]),
+        add(colors, gcode::colorText(*stated.color),
             fmt::format("{}, tool {}",
                         stated.palette   ? "a palette, for the file states none"
                         : stated.changed ? "a change of colour"

@@ -5,6 +5,7 @@
 #include "export/mesh/chunk_writer.h"
 #include "export/mesh/face_groups.h"
 #include "export/mesh/linear_color.h"
+#include "gcode/toolpath/color.h"
 
 #include <fmt/format.h>
 
@@ -27,10 +28,8 @@ void writeMtl(const SurfaceMesh& mesh, const AtomicFile& file) {
     out.text(fmt::format("# by Stratum {}\n", STRATUM_VERSION));
     for (const MeshMaterial& material : mesh.materials) {
         const auto linear = linearOf(material.color);
-        out.text(fmt::format(
-            "\nnewmtl {}\n# sRGB #{:02x}{:02x}{:02x}\nKd {:.6f} {:.6f} {:.6f}\nKs 0.04 0.04 0.04\n"
-            "Ns 40\nillum 2\n",
-            material.name, material.color[0], material.color[1], material.color[2], linear[0], linear[1], linear[2]));
+        out.text(fmt::format("\nnewmtl {}\n# sRGB {}\nKd {:.6f} {:.6f} {:.6f}\nKs 0.04 0.04 0.04\nNs 40\nillum 2\n",
+                             material.name, gcode::colorText(material.color), linear[0], linear[1], linear[2]));
     }
     close(out, stream, file.destination());
 }

@@ -3,6 +3,7 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/own_file.h"
+#include "gcode/toolpath/color.h"
 
 #include <fmt/format.h>
 #include <zip.h>
@@ -116,8 +117,7 @@ private:
         if (!mesh_.materials.empty()) {
             add("<basematerials id=\"1\">");
             for (const MeshMaterial& m : mesh_.materials)
-                add("<base name=\"{}\" displaycolor=\"#{:02X}{:02X}{:02X}\"/>", m.name, m.color[0], m.color[1],
-                    m.color[2]);
+                add("<base name=\"{}\" displaycolor=\"{}\"/>", m.name, gcode::colorText(m.color));
             add("</basematerials>\n");
         }
         add("<object id=\"2\" type=\"model\"{}><mesh><vertices>\n",

@@ -1,9 +1,8 @@
 #include "export/plan/level_set_plan.h"
 
+#include "gcode/toolpath/color.h"
 #include "voxelize/beads/part_bounds.h"
 #include "voxelize/beads/part_outline.h"
-
-#include <fmt/format.h>
 
 #include <algorithm>
 #include <iterator>
@@ -56,10 +55,7 @@ Provenance LevelSetPlan::provenance(const std::string& source_file, const std::s
     provenance.up = choices_.up;
     provenance.selection = voxelize::describeSelection(choices_.print);
     if (left_out_ > 0) provenance.selection += provenance.selection.empty() ? "the part alone" : "; the part alone";
-    if (colors_.size() == 1 && colors_.front()) {
-        const auto& [red, green, blue] = *colors_.front();
-        provenance.filament_color = fmt::format("#{:02X}{:02X}{:02X}", red, green, blue);
-    }
+    if (colors_.size() == 1 && colors_.front()) provenance.filament_color = gcode::colorText(*colors_.front());
     const voxelize::Bounds part = voxelize::partBounds(toolpath_, purposes(), printed);
     provenance.part = voxelize::placed(
         placement_.tilt == 0 ? part : voxelize::partBounds(toolpath_, purposes(), printed, placement_.tilt),

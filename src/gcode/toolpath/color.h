@@ -1,10 +1,11 @@
-// "#RRGGBB" as slicers write colors.
+// Colors of filaments: "#rrggbb", as slicers write them.
 #pragma once
 
 #include <array>
 #include <charconv>
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <string_view>
 
 namespace stratum::gcode {
@@ -22,6 +23,14 @@ inline std::optional<Rgb> parseColor(std::string_view text) {
         if (error != std::errc{} || end != first + 2) return std::nullopt;
     }
     return color;
+}
+
+/// "#rrggbb".
+inline std::string colorText(const Rgb& color) {
+    constexpr std::string_view kDigits = "0123456789abcdef";
+    std::string text = "#";
+    for (const std::uint8_t value : color) text.append({kDigits[value >> 4U], kDigits[value & 15U]});
+    return text;
 }
 
 }  // namespace stratum::gcode

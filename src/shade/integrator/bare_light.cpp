@@ -91,9 +91,9 @@ glm::vec3 unfolded(float u, float v) {
 }  // namespace
 
 BareLight::BareLight(const SceneDescription& scene, const glm::dvec3& center, bool glints)
-    : table_(kSide * kSide), glints_(glints ? table_.size() : 0) {
+    : matt_(kSide * kSide), gloss_(matt_.size()), glints_(glints ? matt_.size() : 0) {
     const std::vector<LightPart> parts = gather(scene, center);
-    parallelFor(table_.size(), kSide, [&](std::size_t first, std::size_t last) {
+    parallelFor(matt_.size(), kSide, [&](std::size_t first, std::size_t last) {
         for (std::size_t n = first; n != last; ++n) {
             const auto place = [](std::size_t i) { return 2.0f * static_cast<float>(i) / (kSide - 1) - 1.0f; };
             const glm::vec3 d = unfolded(place(n % kSide), place(n / kSide));
@@ -115,20 +115,18 @@ BareLight::BareLight(const SceneDescription& scene, const glm::dvec3& center, bo
                 glint += power * part.irradiance;
             }
             if (glints) glints_[n] = glint * (kGlintPower + 1.0f) * 0.5f * kInvPi;
-            table_[n] = {matt * kInvPi, gloss * (kGlossPower + 1.0f) * 0.5f * kInvPi};
+            matt_[n] = matt * kInvPi;
+            gloss_[n] = gloss * (kGlossPower + 1.0f) * 0.5f * kInvPi;
         }
     });
     // Relative to the brightest matt surface, so that the light's unit cancels.
-    for (const glm::vec2& node : table_) brightest_ = std::max(brightest_, node.x);
-    if (brightest_ > 0.0f && std::isfinite(brightest_))
-        for (std::size_t n = 0; n < table_.size(); ++n) {
-            table_[n] /= brightest_;
-            if (glints) glints_[n] /= brightest_;
-        }
+    brightest_ = std::max(0.0f, *std::max_element(matt_.begin(), matt_.end()));
+    if (!(brightest_ > 0.0f && std::isfinite(brightest_))) return;
+    for (std::vector<float>* table : {&matt_, &gloss_, &glints_})
+        for (float& node : *table) node /= brightest_;
 }
 
-template <typename Value>
-Value BareLight::at(const std::vector<Value>& table, const glm::vec3& direction) {
+float BareLight::at(const std::vector<float>& table, const glm::vec3& direction) {
     const float sum = std::abs(direction.x) + std::abs(direction.y) + std::abs(direction.z);
     float u = direction.x / sum;
     float v = direction.y / sum;
@@ -146,11 +144,8 @@ Value BareLight::at(const std::vector<Value>& table, const glm::vec3& direction)
     std::size_t y = 0;
     const float a = cell(u, x);
     const float b = cell(v, y);
-    const Value* row = &table[y * kSide + x];
+    const float* row = &table[y * kSide + x];
     return (1.0f - b) * ((1.0f - a) * row[0] + a * row[1]) + b * ((1.0f - a) * row[kSide] + a * row[kSide + 1]);
 }
-
-template glm::vec2 BareLight::at(const std::vector<glm::vec2>& table, const glm::vec3& direction);
-template float BareLight::at(const std::vector<float>& table, const glm::vec3& direction);
 
 }  // namespace stratum::shade

@@ -3,7 +3,6 @@
 
 #include "shade/scene/scene.h"
 
-#include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
 #include <vector>
@@ -24,21 +23,19 @@ public:
     BareLight(const SceneDescription& scene, const glm::dvec3& center, bool glints = false);
 
     /// Radiance of a white Lambert surface, relative to that of the brightest normal.
-    float matt(const glm::vec3& normal) const { return at(normal).x; }
+    float matt(const glm::vec3& normal) const { return at(matt_, normal); }
     /// Mean radiance about a direction, by the weight (wi . mirror)^16, in the same unit.
-    float gloss(const glm::vec3& mirror) const { return at(mirror).y; }
+    float gloss(const glm::vec3& mirror) const { return at(gloss_, mirror); }
     /// The same by (wi . mirror)^128, as narrow as the reflection of a flake of glitter; 0 if it was not asked for.
     float glint(const glm::vec3& mirror) const { return glints_.empty() ? 0.0f : at(glints_, mirror); }
     /// Radiance (relative, see color.h) of the brightest normal; 0 if there is no light.
     float brightest() const { return brightest_; }
 
 private:
-    glm::vec2 at(const glm::vec3& direction) const { return at(table_, direction); }
-    template <typename Value>
-    static Value at(const std::vector<Value>& table, const glm::vec3& direction);
+    static float at(const std::vector<float>& table, const glm::vec3& direction);
 
-    std::vector<glm::vec2> table_;
-    std::vector<float> glints_;
+    std::vector<float> matt_, gloss_;
+    std::vector<float> glints_;  // may be empty
     float brightest_ = 0.0f;
 };
 

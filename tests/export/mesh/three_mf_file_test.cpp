@@ -35,8 +35,8 @@ TEST(ThreeMfFile, HoldsTheMeshAndItsMaterials) {
     write3mf(test::twoMaterials(), folder.path() / "part.3mf", {});
     const std::string model = entry(folder.path() / "part.3mf", "3D/3dmodel.model");
     EXPECT_NE(model.find("<model unit=\"millimeter\""), std::string::npos) << model;
-    EXPECT_NE(model.find("<basematerials id=\"1\"><base name=\"tool_0\" displaycolor=\"#FF8000\"/>"
-                         "<base name=\"tool_1\" displaycolor=\"#0000FF\"/></basematerials>"),
+    EXPECT_NE(model.find("<basematerials id=\"1\"><base name=\"tool_0\" displaycolor=\"#ff8000\"/>"
+                         "<base name=\"tool_1\" displaycolor=\"#0000ff\"/></basematerials>"),
               std::string::npos)
         << model;
     EXPECT_NE(model.find("<vertex x=\"1\" y=\"1\" z=\"3\"/>"), std::string::npos);
