@@ -40,7 +40,7 @@ public:
 
     // Returns the points with plastic, bit c for point c.
     // `tops`: if not null, the highest plastic of the layers below at each point, mm: what this layer shares with them
-    // it does not hold.
+    // it does not hold. The layer's own is added.
     std::uint64_t add(const Layer& layer, const PlanField& sides2, int first_node, TileSums::Layer& sums,
                       PlanField* tops) const {
         thread_local PressedLayer pressed;
@@ -274,15 +274,36 @@ TileSums::Layer& sumsOf(Layers& layers, std::uint32_t layer) {
     return *sums;
 }
 
-// Whether some layer begins clearly below the top of another one before it.
-bool layersOverlap(const LayerStack& stack) {
-    double top = std::numeric_limits<double>::lowest();
-    return std::any_of(stack.layers.begin(), stack.layers.end(), [&top](const Layer& layer) {
-        const bool overlaps = layer.bottom() + 2 * kWeldGap * layer.halfHeight() < top;
-        top = std::max(top, layer.center_z + layer.halfHeight());
-        return overlaps;
-    });
-}
+// Layers that reach into each other, such as threads of bridges and what they lie on. Most reach into none.
+class LayerOverlaps {
+public:
+    explicit LayerOverlaps(const LayerStack& stack) : takes_(stack.layers.size()), gives_(stack.layers.size()) {
+        double top = std::numeric_limits<double>::lowest();
+        for (std::size_t n = 0; n < takes_.size(); ++n) {
+            const Layer& layer = stack.layers[n];
+            takes_[n] = layer.bottom() + 2 * kWeldGap * layer.halfHeight() < top;
+            top = std::max(top, topOf(layer));
+            any_ = any_ || takes_[n];
+        }
+        double bottom = std::numeric_limits<double>::max();
+        for (std::size_t n = takes_.size(); n-- > 0;) {
+            gives_[n] = topOf(stack.layers[n]) > bottom;
+            if (takes_[n]) bottom = std::min(bottom, stack.layers[n].bottom());
+        }
+    }
+    bool any() const { return any_; }
+    // Whether a layer begins clearly below the top of one before it.
+    bool takes(std::uint32_t layer) const { return takes_[layer]; }
+    // Whether one behind it that takes begins below its top.
+    bool gives(std::uint32_t layer) const { return gives_[layer]; }
+
+private:
+    // Before it is raised.
+    static double topOf(const Layer& layer) { return layer.center_z + layer.halfHeight(); }
+
+    std::vector<bool> takes_, gives_;
+    bool any_ = false;
+};
 
 // Of a top in a column, in the order of the tops.
 struct TopFields {
@@ -308,7 +329,7 @@ TileSums sumTile(const gcode::Toolpath& toolpath, const LayerStack& stack, const
     std::vector<std::uint32_t> ranks;
     std::vector<OpenTop> tops;
     std::vector<TopFields> fields;
-    const bool overlap = layersOverlap(stack);
+    const LayerOverlaps overlaps(stack);
     PlanField highest;
     for (int cj = 0; cj < kTileColumns; ++cj)
         for (int ci = 0; ci < kTileColumns; ++ci) {
@@ -317,12 +338,14 @@ TileSums sumTile(const gcode::Toolpath& toolpath, const LayerStack& stack, const
             ranks.insert(ranks.end(), bins[bin].begin(), bins[bin].end());
             column.open(bins.originI(bin), bins.originJ(bin), bins[bin], std::numeric_limits<std::uint32_t>::max());
             const int first_node = kSquareCells * (cj * kNodes + ci);
-            if (overlap) std::fill(std::begin(highest.v), std::end(highest.v), std::numeric_limits<float>::lowest());
+            if (overlaps.any())
+                std::fill(std::begin(highest.v), std::end(highest.v), std::numeric_limits<float>::lowest());
             tops.clear();
             column.forEachSides([&](std::uint32_t layer, const PlanField& sides2, const PlanField& nearest) {
                 const Layer& of = stack.layers[layer];
                 TileSums::Layer& sums = sumsOf(layers, layer);
-                const std::uint64_t solid = kSums.add(of, sides2, first_node, sums, overlap ? &highest : nullptr);
+                PlanField* const tops_below = overlaps.takes(layer) || overlaps.gives(layer) ? &highest : nullptr;
+                const std::uint64_t solid = kSums.add(of, sides2, first_node, sums, tops_below);
                 if (solid == 0) return;
                 addTop(layer, solid, tops);
                 if (tops.size() > fields.size()) fields.emplace_back();
