@@ -20,11 +20,11 @@ constexpr std::size_t kMostAngles = 64;
 /// A ring of facet normals that are visible from a direction: what Ggx::sampleVisible() computes for u.y, and the
 /// cosines and sines of its angles for all u.x. The direction's own numbers are in it, too.
 struct alignas(64) FacetRing {
+    Ggx ggx;
     std::array<float, kMostAngles> cosines{}, sines{};
     glm::vec3 stretched{0.0f};  // the direction among facets that are a hemisphere
     glm::vec3 wo{0.0f};
     float radius = 0.0f, z = 0.0f;
-    float along = 0.0f, across = 0.0f, product = 0.0f, x = 0.0f, y = 0.0f;  // as of Ggx
     float wo_stretch = 0.0f;
     float eta = 0.0f;  // 0: all light is reflected
 };
@@ -63,8 +63,8 @@ void Reflected(const FacetRing& ring, std::size_t angles, float* values) {
         // Ggx::sampleVisible().
         const V x = hn::Add(hn::Mul(set(ring.radius), hn::Load(f, &ring.cosines[n])), set(ring.stretched.x));
         const V y = hn::Add(hn::Mul(set(ring.radius), hn::Load(f, &ring.sines[n])), set(ring.stretched.y));
-        const V hx = hn::Mul(x, set(ring.along));
-        const V hy = hn::Mul(y, set(ring.across));
+        const V hx = hn::Mul(x, set(ring.ggx.along()));
+        const V hy = hn::Mul(y, set(ring.ggx.across()));
         const V hz = hn::Max(set(ring.z + ring.stretched.z), zero);
         const V length2 = hn::Add(hn::Add(hn::Mul(hx, hx), hn::Mul(hy, hy)), hn::Mul(hz, hz));
         const V scale = hn::Div(set(1.0f), hn::Sqrt(length2));
@@ -79,8 +79,9 @@ void Reflected(const FacetRing& ring, std::size_t angles, float* values) {
         const V wy = hn::Sub(hn::Mul(twice, ny), set(ring.wo.y));
         const V wz = hn::Sub(hn::Mul(twice, nz), set(ring.wo.z));
         // Ggx::shadowing().
-        const V spread = hn::Add(hn::Mul(hn::Mul(set(ring.y), wx), wx), hn::Mul(hn::Mul(set(ring.x), wy), wy));
-        const V stretch = hn::Sqrt(hn::Add(hn::Mul(wz, wz), hn::Mul(set(ring.product), spread)));
+        const V spread = hn::Add(hn::Mul(hn::Mul(set(ring.ggx.alongByAcross()), wx), wx),
+                                 hn::Mul(hn::Mul(set(ring.ggx.acrossByAlong()), wy), wy));
+        const V stretch = hn::Sqrt(hn::Add(hn::Mul(wz, wz), hn::Mul(set(ring.ggx.product()), spread)));
         V value = hn::Div(hn::Mul(wz, set(ring.wo.z + ring.wo_stretch)),
                           hn::Add(hn::Mul(set(ring.wo_stretch), wz), hn::Mul(stretch, set(ring.wo.z))));
         if (ring.eta > 0.0f) value = hn::Mul(fresnel(c, ring.eta), value);
@@ -109,14 +110,9 @@ double quadrature(const Ggx& ggx, float eta, float cosine, float azimuth_sine2) 
     // matters where all of the light is reflected.
     const bool even = eta > 0.0f;
     const float sine = std::sqrt(std::max(0.0f, 1.0f - cosine * cosine));
-    FacetRing ring;
+    FacetRing ring{.ggx = ggx};
     ring.wo = {sine * std::sqrt(1.0f - azimuth_sine2), sine * std::sqrt(azimuth_sine2), cosine};
     ring.stretched = glm::normalize(glm::vec3(ring.wo.x * ggx.along(), ring.wo.y * ggx.across(), ring.wo.z));
-    ring.along = ggx.along();
-    ring.across = ggx.across();
-    ring.product = ggx.product();
-    ring.x = ggx.acrossByAlong();
-    ring.y = ggx.alongByAcross();
     ring.wo_stretch = ggx.stretch(ring.wo);
     ring.eta = eta;
     // Half of the angles are sufficient where wo is in a plane of symmetry: then y is 0, or x.

@@ -8,11 +8,10 @@ void coverTops(const LayerStack& stack, std::vector<OpenTop>& tops) {
     // Both lists ascend by the upper layer, and what it lies on is most often the top before it.
     auto weld = stack.welds.begin();
     for (auto upper = tops.begin(); upper != tops.end(); ++upper) {
-        if (weld == stack.welds.begin() || (weld != stack.welds.end() && weld->upper + 1 < upper->layer))
+        if (weld != stack.welds.end() && weld->upper < upper->layer)
             weld = std::lower_bound(weld, stack.welds.end(), upper->layer,
                                     [](const Weld& pair, std::uint32_t layer) { return pair.upper < layer; });
-        for (; weld != stack.welds.end() && weld->upper <= upper->layer; ++weld) {
-            if (weld->upper < upper->layer) continue;
+        for (; weld != stack.welds.end() && weld->upper == upper->layer; ++weld) {
             auto lower = upper == tops.begin() ? upper : upper - 1;
             if (lower->layer != weld->lower)
                 lower = std::lower_bound(tops.begin(), tops.end(), weld->lower,
