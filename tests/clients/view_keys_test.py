@@ -210,12 +210,14 @@ def written_anew():
     with drawn(path):
         js(count)
         live = []
-        for n in range(1, 4):
+        for n in range(1, 6):
             with open(path, "a", encoding="utf-8") as file:
                 file.write("; written anew\n")
             until(f"window.programs >= {6 * n} && document.body.dataset.moving === 'own'", "it is drawn anew")
             live.append(js("return window.live.size"))
-        check(live[0] == live[1] == live[2] > 0, f"as many objects as before: {live}")
+        # The program of quick pictures and the table of moves come when a slow machine needs them or has read them.
+        late = 2
+        check(live[0] > late and max(live) - min(live) <= late, f"as many objects as before: {live}")
 
 
 def double_click():
