@@ -9,47 +9,49 @@ namespace stratum::voxelize {
 
 void LeafColumn::placeSwell() {
     swell_placed_ = true;
-    swell_sources_.clear();
+    swell_tiles_z_.reset();
     const auto nodeBelow = [](double mm) { return static_cast<int>(std::floor(mm / kNodeSpacing)); };
     first_node_i_ = nodeBelow(middle_x_ - half_extent_);
     first_node_j_ = nodeBelow(middle_y_ - half_extent_);
-    const int last_i = nodeBelow(middle_x_ + half_extent_) + 1;
-    const int last_j = nodeBelow(middle_y_ + half_extent_) + 1;
-    nodes_i_ = last_i - first_node_i_ + 1;
-    const int nodes_j = last_j - first_node_j_ + 1;
-    const auto tileOf = [](int node) { return (node >= 0 ? node : node - kTileCells + 1) / kTileCells; };
-    for (int y = tileOf(first_node_j_); y <= tileOf(last_j); ++y)
-        for (int x = tileOf(first_node_i_); x <= tileOf(last_i); ++x) {
-            const SwellTile* tile = stack_.swell->tile(toolpath_, stack_, x, y);
-            if (tile == nullptr) continue;
-            swell_sources_.push_back({tile,
-                                      {},
-                                      std::max(x * kTileCells, first_node_i_),
-                                      std::min(x * kTileCells + kTileCells - 1, last_i),
-                                      std::max(y * kTileCells, first_node_j_),
-                                      std::min(y * kTileCells + kTileCells - 1, last_j)});
-        }
-    swell_nodes_.resize(static_cast<std::size_t>(nodes_i_) * static_cast<std::size_t>(nodes_j));
+    nodes_i_ = nodeBelow(middle_x_ + half_extent_) + 2 - first_node_i_;
+    nodes_j_ = nodeBelow(middle_y_ + half_extent_) + 2 - first_node_j_;
+    swell_nodes_.resize(static_cast<std::size_t>(nodes_i_) * static_cast<std::size_t>(nodes_j_));
     const auto rampsOf = [this](const PlanField& q, double middle, int first_node, int nodes, auto& ramps) {
         ramps.resize(static_cast<std::size_t>(nodes - 1));
         nodeRamps(q, static_cast<float>(1 / (scale_ * kNodeSpacing)),
                   static_cast<float>(middle / kNodeSpacing - first_node), ramps);
     };
     rampsOf(grid_.qx, middle_x_, first_node_i_, nodes_i_, ramps_x_);
-    rampsOf(grid_.qy, middle_y_, first_node_j_, nodes_j, ramps_y_);
+    rampsOf(grid_.qy, middle_y_, first_node_j_, nodes_j_, ramps_y_);
 }
 
-bool LeafColumn::gatherNodes(std::uint32_t layer, NodeValues SwellTile::*kind, std::size_t number) {
+void LeafColumn::findSwellTiles(std::uint32_t z) {
     if (!swell_placed_) placeSwell();
+    if (swell_tiles_z_ == z) return;
+    swell_sources_.clear();
+    const int last_i = first_node_i_ + nodes_i_ - 1;
+    const int last_j = first_node_j_ + nodes_j_ - 1;
+    const auto tileOf = [](int node) { return (node >= 0 ? node : node - kTileCells + 1) / kTileCells; };
+    for (int y = tileOf(first_node_j_); y <= tileOf(last_j); ++y)
+        for (int x = tileOf(first_node_i_); x <= tileOf(last_i); ++x) {
+            const SwellTile* tile = stack_.swell->tile(toolpath_, stack_, {x, y, z});
+            if (tile == nullptr) continue;
+            swell_sources_.push_back(
+                {tile, std::max(x * kTileCells, first_node_i_), std::min(x * kTileCells + kTileCells - 1, last_i),
+                 std::max(y * kTileCells, first_node_j_), std::min(y * kTileCells + kTileCells - 1, last_j)});
+        }
+    swell_tiles_z_ = z;
+}
+
+bool LeafColumn::gatherNodes(std::uint32_t layer, NodeValues SwellTile::*kind) {
+    findSwellTiles(layer / kTileLayers);
     bool found = false;
-    for (SwellSource& source : swell_sources_) {
+    for (const SwellSource& source : swell_sources_) {
         const NodeValues& values = source.tile->*kind;
-        const std::size_t place = source.next[number] = values.find(layer, source.next[number]);
-        if (place == values.layers().size() || values.layers()[place] != layer) continue;
-        ++source.next[number];  // of the next layer, most likely
+        if (!values.has(layer)) continue;
         for (int j = source.first_j; j <= source.last_j; ++j)
             for (int i = source.first_i; i <= source.last_i; ++i) {
-                const float value = values.of(place, i & (kTileCells - 1), j & (kTileCells - 1));
+                const float value = values.of(layer, i & (kTileCells - 1), j & (kTileCells - 1));
                 if (!found && !(value > 0)) continue;
                 if (!found) std::fill(swell_nodes_.begin(), swell_nodes_.end(), 0.0F);
                 found = true;
@@ -59,16 +61,15 @@ bool LeafColumn::gatherNodes(std::uint32_t layer, NodeValues SwellTile::*kind, s
     return found;
 }
 
-bool LeafColumn::valuesOf(std::uint32_t layer, NodeValues SwellTile::*kind, std::size_t number, double scale,
-                          PlanField& values) {
-    if (!gatherNodes(layer, kind, number)) return false;
+bool LeafColumn::valuesOf(std::uint32_t layer, NodeValues SwellTile::*kind, double scale, PlanField& values) {
+    if (!gatherNodes(layer, kind)) return false;
     largest_node_ = *std::max_element(swell_nodes_.begin(), swell_nodes_.end());
     betweenNodes(ramps_x_, ramps_y_, swell_nodes_, static_cast<float>(scale), values);
     return true;
 }
 
 bool LeafColumn::swell(std::uint32_t layer, PlanField& d, PlanField& sides2, float& least) {
-    if (!valuesOf(layer, &SwellTile::out, 0, scale_, between_)) return false;
+    if (!valuesOf(layer, &SwellTile::out, scale_, between_)) return false;
     least = moveOut(between_, d, sides2);
     return true;
 }
@@ -77,9 +78,9 @@ bool LeafColumn::raise(std::uint32_t layer, const PlanField& nearest, PlanField&
     constexpr double kRounding = 1 + 1e-5;
     most = 0;
     const Layer& of = stack_.layers[layer];
-    const bool rises = valuesOf(layer, &SwellTile::rise, 1, scale_, rise);
+    const bool rises = valuesOf(layer, &SwellTile::rise, scale_, rise);
     if (rises) most = kRounding * static_cast<double>(largest_node_);
-    if (!(of.crown > 0) || !valuesOf(layer, &SwellTile::open, 2, 1, between_)) return rises;
+    if (!(of.crown > 0) || !valuesOf(layer, &SwellTile::open, 1, between_)) return rises;
     if (!rises) std::fill(std::begin(rise.v), std::end(rise.v), 0.0F);
     lowerByCrown(between_, nearest, static_cast<float>(of.crown * scale_), static_cast<float>(of.radius * scale_),
                  rise);

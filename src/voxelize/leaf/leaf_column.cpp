@@ -55,6 +55,7 @@ LeafColumn::LeafColumn(const gcode::Toolpath& toolpath, const LayerStack& stack,
                              : ColumnGrid(static_cast<float>(lattice.voxel_size * scale))),
       half_extent_(0.5 * (spreadOver(kind) ? kLeafDim + 1 : kLeafDim - 1) * lattice.voxel_size),
       slots_(kind == Kind::kept) {
+    if (spreadOver(kind)) return;  // the rest is of leaves
     for (const Layer& layer : stack.layers) thickest_ = std::max(thickest_, layer.halfHeight() + layer.most_rise);
     weld_offsets_.assign(stack.layers.size() + 1, 0);
     for (const Weld& weld : stack.welds) ++weld_offsets_[weld.upper + 1];

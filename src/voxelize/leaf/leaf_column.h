@@ -16,6 +16,7 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -105,13 +106,14 @@ public:
         for (const ColumnLayer& source : column_layers_) visit(source.layer, fieldOf(source));
     }
 
-    /// Calls visit(layer, sides2, nearest) for each layer of the open column, from the lowest: its index in
-    /// LayerStack::layers, the squared plan distance beyond its flats, and, only of layers with a crown, the plan
-    /// distance to the flat of the nearest bead before grooves are filled. Only of a column of which no leaf is
-    /// evaluated.
-    template <typename Visit>
-    void forEachSides(Visit visit) {
+    /// Calls visit(layer, sides2, nearest) for each layer of the open column for which wanted(layer) holds, from the
+    /// lowest: its index in LayerStack::layers, the squared plan distance beyond its flats, and, only of layers with a
+    /// crown, the plan distance to the flat of the nearest bead before grooves are filled. Only of a column of which no
+    /// leaf is evaluated.
+    template <typename Wanted, typename Visit>
+    void forEachSides(Wanted wanted, Visit visit) {
         for (const ColumnLayer& source : column_layers_) {
+            if (!wanted(source.layer)) continue;
             fieldOf(source);
             visit(source.layer, sides2_, nearest_);
         }
@@ -164,12 +166,12 @@ private:
     /// anywhere; `most`, mm, is as much or more.
     bool raise(std::uint32_t layer, const PlanField& nearest, PlanField& rise, double& most);
     void placeSwell();
-    /// One kind of values of a layer at the nodes of the open column, into swell_nodes_. False if all are 0. `number`:
-    /// of the kind.
-    bool gatherNodes(std::uint32_t layer, NodeValues SwellTile::*kind, std::size_t number);
+    /// Sets swell_sources_. `z`: as of TilePlace.
+    void findSwellTiles(std::uint32_t z);
+    /// One kind of values of a layer at the nodes of the open column, into swell_nodes_. False if all are 0.
+    bool gatherNodes(std::uint32_t layer, NodeValues SwellTile::*kind);
     /// Those values at the samples, times `scale`. False if all are 0.
-    bool valuesOf(std::uint32_t layer, NodeValues SwellTile::*kind, std::size_t number, double scale,
-                  PlanField& values);
+    bool valuesOf(std::uint32_t layer, NodeValues SwellTile::*kind, double scale, PlanField& values);
     void addWelds(const PlanLayer& upper);
     void gatherTerms(int k0);
     /// Into the planes from k0, the first of a leaf.
@@ -218,11 +220,11 @@ private:
     // Where the swell of the open column comes from.
     struct SwellSource {
         const SwellTile* tile;
-        std::array<std::size_t, 3> next;       // of each kind, the place where a layer is looked for first
         int first_i, last_i, first_j, last_j;  // nodes of the column that the tile owns
     };
     bool swell_placed_ = false;
-    int first_node_i_ = 0, first_node_j_ = 0, nodes_i_ = 0;
+    int first_node_i_ = 0, first_node_j_ = 0, nodes_i_ = 0, nodes_j_ = 0;
+    std::optional<std::uint32_t> swell_tiles_z_;  // of swell_sources_
     std::vector<SwellSource> swell_sources_;
     std::vector<float> swell_nodes_;
     float largest_node_ = 0;                    // of valuesOf(), before it is scaled

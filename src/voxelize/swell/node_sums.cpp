@@ -42,7 +42,7 @@ void PressLayer(const PlanField& sides2, float radius, float straight, PressedLa
     forEachVector([&](std::size_t c) HWY_ATTR {
         const VF side = hn::Sqrt(hn::Load(f, sides2.v + c));
         const VF held = thickness(side);
-        hn::Store(held, f, out.fields[0].v + c);
+        hn::Store(hn::Neg(held), f, out.fields[0].v + c);
         std::uint8_t bits[8] = {};
         hn::StoreMaskBits(f, hn::Gt(held, zero), bits);
         std::uint64_t word = 0;
@@ -56,10 +56,9 @@ void PressLayer(const PlanField& sides2, float radius, float straight, PressedLa
     });
 }
 
-// `sums`: of each cell those of its corners, by field.
-void SumFields(const NodeSums::Weights& weights, const std::array<PlanField, NodeSums::kFields>& fields,
-               float (*HWY_RESTRICT sums)[NodeSums::kCorners * NodeSums::kFields]) {
-    static_assert(NodeSums::kFields == 4 && NodeSums::kCells == 4);
+void AddFields(const NodeSums::Weights& weights, const std::array<PlanField, NodeSums::kFields>& fields,
+               float* HWY_RESTRICT nodes, std::size_t stride) {
+    static_assert(NodeSums::kFields == 4 && NodeSums::kCells == 4 && kSquareNodes == 3);
     // By point, the fields side by side: a block of 128 bits, which each corner takes.
     alignas(64) float by_point[kColumnSamples][NodeSums::kFields];
     const F f;
@@ -67,7 +66,9 @@ void SumFields(const NodeSums::Weights& weights, const std::array<PlanField, Nod
         hn::StoreInterleaved4(hn::Load(f, fields[0].v + c), hn::Load(f, fields[1].v + c), hn::Load(f, fields[2].v + c),
                               hn::Load(f, fields[3].v + c), f, by_point[c]);
     });
+    // Of each cell the sums of its corners, by field.
     constexpr std::size_t kLanes = NodeSums::kCorners * NodeSums::kFields;
+    alignas(64) float sums[NodeSums::kCells][kLanes];
     for (std::size_t lane = 0; lane < kLanes; lane += hn::Lanes(f)) {
         VF a = hn::Zero(f);
         VF b = a;
@@ -88,6 +89,48 @@ void SumFields(const NodeSums::Weights& weights, const std::array<PlanField, Nod
         hn::StoreU(c, f, sums[2] + lane);
         hn::StoreU(d, f, sums[3] + lane);
     }
+    const hn::FixedTag<float, NodeSums::kFields> of_node;
+    using Node = hn::Vec<decltype(of_node)>;
+    const auto corner = [&](std::size_t cell, std::size_t n)
+                            HWY_ATTR { return hn::Load(of_node, sums[cell] + n * NodeSums::kFields); };
+    const auto add = [&](std::size_t row, std::size_t column, Node sum) HWY_ATTR {
+        float* const node = nodes + row * stride + column * NodeSums::kFields;
+        hn::StoreU(hn::Add(hn::LoadU(of_node, node), sum), of_node, node);
+    };
+    // Corners of a cell: the second along x is the next, along y the one after.
+    add(0, 0, corner(0, 0));
+    add(0, 1, hn::Add(corner(0, 1), corner(1, 0)));
+    add(0, 2, corner(1, 1));
+    add(1, 0, hn::Add(corner(0, 2), corner(2, 0)));
+    add(1, 1, hn::Add(hn::Add(hn::Add(corner(0, 3), corner(1, 2)), corner(2, 1)), corner(3, 0)));
+    add(1, 2, hn::Add(corner(1, 3), corner(3, 1)));
+    add(2, 0, corner(2, 2));
+    add(2, 1, hn::Add(corner(2, 3), corner(3, 2)));
+    add(2, 2, corner(3, 3));
+}
+
+void AddNodes(const float* HWY_RESTRICT nodes, std::size_t count, float* HWY_RESTRICT surplus,
+              float* HWY_RESTRICT gain0, float* HWY_RESTRICT gain1, float* HWY_RESTRICT gain2) {
+    const F f;
+    std::size_t n = 0;
+    const auto add = [f](VF values, float* sums) HWY_ATTR { hn::StoreU(hn::Add(hn::LoadU(f, sums), values), f, sums); };
+    for (; n + hn::Lanes(f) <= count; n += hn::Lanes(f)) {
+        VF a;
+        VF b;
+        VF c;
+        VF d;
+        hn::LoadInterleaved4(f, nodes + 4 * n, a, b, c, d);
+        add(a, surplus + n);
+        add(b, gain0 + n);
+        add(c, gain1 + n);
+        add(d, gain2 + n);
+    }
+    for (; n < count; ++n) {
+        surplus[n] += nodes[4 * n];
+        gain0[n] += nodes[4 * n + 1];
+        gain1[n] += nodes[4 * n + 2];
+        gain2[n] += nodes[4 * n + 3];
+    }
 }
 
 }  // namespace HWY_NAMESPACE
@@ -98,21 +141,16 @@ HWY_AFTER_NAMESPACE();
 namespace stratum::voxelize {
 
 HWY_EXPORT(PressLayer);
-HWY_EXPORT(SumFields);
-
-namespace {
-
-// The node at a corner of a cell, in the square's rows.
-std::size_t nodeOf(std::size_t cell, std::size_t corner) {
-    const std::size_t column = cell % kSquareCells + corner % 2;
-    const std::size_t row = cell / kSquareCells + corner / 2;
-    return row * kSquareNodes + column;
-}
-
-}  // namespace
+HWY_EXPORT(AddFields);
+HWY_EXPORT(AddNodes);
 
 void pressLayer(const PlanField& sides2, float radius, float straight, PressedLayer& out) {
     HWY_DYNAMIC_DISPATCH(PressLayer)(sides2, radius, straight, out);
+}
+
+void addNodes(std::span<const TileSums::Node> nodes, float* surplus, float* gain0, float* gain1, float* gain2) {
+    static_assert(sizeof(TileSums::Node) == 4 * sizeof(float));
+    if (!nodes.empty()) HWY_DYNAMIC_DISPATCH(AddNodes)(&nodes[0].surplus, nodes.size(), surplus, gain0, gain1, gain2);
 }
 
 NodeSums::NodeSums(const ColumnGrid& points) {
@@ -139,14 +177,13 @@ NodeSums::NodeSums(const ColumnGrid& points) {
     for (std::size_t node = 0; node < kNodes; ++node) area_[node] = sums[node][0];
 }
 
+void NodeSums::add(const std::array<PlanField, kFields>& fields, float* nodes, std::size_t stride) const {
+    HWY_DYNAMIC_DISPATCH(AddFields)(weights_, fields, nodes, stride);
+}
+
 NodeSums::Sums NodeSums::of(const std::array<PlanField, kFields>& fields) const {
-    alignas(64) float by_cell[kCells][kCorners * kFields];
-    HWY_DYNAMIC_DISPATCH(SumFields)(weights_, fields, by_cell);
     Sums sums{};
-    for (std::size_t cell = 0; cell < kCells; ++cell)
-        for (std::size_t corner = 0; corner < kCorners; ++corner)
-            for (std::size_t field = 0; field < kFields; ++field)
-                sums[nodeOf(cell, corner)][field] += by_cell[cell][corner * kFields + field];
+    add(fields, sums[0].data(), kSquareNodes * kFields);
     return sums;
 }
 

@@ -6,14 +6,16 @@
 #include "voxelize/swell/swell_field.h"
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
+#include <span>
 
 namespace stratum::voxelize {
 
 constexpr int kSquareCells = 2;
 constexpr int kSquareNodes = kSquareCells + 1;
 
-/// What a layer holds under each point (mm), and what it gains there as outlines move out by TileSums::kSwells.
+/// By point, mm: what a layer holds, below 0, and what it gains as outlines move out by TileSums::kSwells.
 struct PressedLayer {
     static constexpr std::size_t kFields = 1 + TileSums::kLevels;
     enum class Kind : std::uint8_t {
@@ -22,12 +24,15 @@ struct PressedLayer {
         some,
     };
     Kind kind = Kind::nothing;
-    std::array<PlanField, kFields> fields;  ///< held, gains
+    std::array<PlanField, kFields> fields;  ///< in the order of TileSums::Node
     std::uint64_t solid = 0;                ///< bit c: point c has plastic
 };
 
 /// Of a section with that radius and straight sides of the height `straight`, mm. `sides2` as of LeafColumn.
 void pressLayer(const PlanField& sides2, float radius, float straight, PressedLayer& out);
+
+/// Adds the sums of nodes to a row of each kind.
+void addNodes(std::span<const TileSums::Node> nodes, float* surplus, float* gain0, float* gain1, float* gain2);
 
 /// 64 points of ColumnGrid::spread() over the square. Sums of up to four fields at once: tents weigh them, and the area
 /// that a point stands for.
@@ -40,6 +45,8 @@ public:
     /// `points`: in mm from the middle of the square.
     explicit NodeSums(const ColumnGrid& points);
 
+    /// Adds to kFields values of each node: of kSquareNodes rows `stride` values apart.
+    void add(const std::array<PlanField, kFields>& fields, float* nodes, std::size_t stride) const;
     Sums of(const std::array<PlanField, kFields>& fields) const;
     /// Of a field that is 1 at all points.
     float area(std::size_t node) const { return area_[node]; }

@@ -1,9 +1,7 @@
 #include "voxelize/swell/spread.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
-#include <cstdint>
 #include <limits>
 
 namespace stratum::voxelize {
@@ -13,31 +11,6 @@ SpreadNodes::SpreadNodes(int the_edge) : edge(the_edge) {
     surplus.assign(count, 0.0F);
     for (std::vector<float>& level : gain) level.assign(count, 0.0F);
     open.assign(count, 0.0F);
-}
-
-NodeBox SpreadNodes::box() const {
-    NodeBox box{edge, 0, edge, 0};
-    std::vector<std::uint32_t> columns(static_cast<std::size_t>(edge), 0);  // bits of sums: 0 where all are
-    const float* const most = gain.back().data();
-    for (int row = 0; row < edge; ++row) {
-        const std::size_t first = nodeIndex(row, edge, 0);
-        std::uint32_t any = 0;
-        for (std::size_t n = 0; n < columns.size(); ++n) {
-            // All but the surplus are 0 or more.
-            const float sum = std::abs(surplus[first + n]) + most[first + n] + open[first + n];
-            columns[n] |= std::bit_cast<std::uint32_t>(sum);
-            any |= std::bit_cast<std::uint32_t>(sum);
-        }
-        if (any == 0) continue;
-        box.y0 = std::min(box.y0, row);
-        box.y1 = row + 1;
-    }
-    for (int column = 0; column < edge; ++column) {
-        if (columns[static_cast<std::size_t>(column)] == 0) continue;
-        box.x0 = std::min(box.x0, column);
-        box.x1 = column + 1;
-    }
-    return box;
 }
 
 void SpreadNodes::clear(const NodeBox& where) {

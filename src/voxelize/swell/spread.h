@@ -17,8 +17,6 @@ struct SpreadNodes {
     std::vector<float> open;
 
     explicit SpreadNodes(int the_edge);
-    /// All nodes that are not 0.
-    NodeBox box() const;
     void clear(const NodeBox& where);
 };
 
@@ -40,7 +38,8 @@ public:
     /// `edge`: nodes along each edge of the square.
     explicit Spreading(int edge);
 
-    /// Right for the nodes of `wanted`, if all within kSpreadHalo of them are in the square or 0. `box`: of `nodes`.
+    /// Right for the nodes of `wanted`, if all within kSpreadHalo of them are in the square or 0. `box`: of all nodes
+    /// that are not 0.
     /// `most_rise`: mm. Valid until the next call.
     const Spread& spread(const SpreadNodes& nodes, const NodeBox& box, const NodeBox& wanted, double most_rise);
 

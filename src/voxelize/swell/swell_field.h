@@ -14,23 +14,25 @@
 //   3. What is left raises the open tops within kUp cells, by Layer::most_rise at most.
 //   4. What is left then goes to what can gain within kFar cells, and what a node holds more than it was fed is taken
 //      back from there. The rest moves up at its node, from layer to welded layer, into what can gain there, until it
-//      raises an open top. What that cannot take has no place.
+//      raises an open top; by kUpLayers at most. What that cannot take has no place.
 //   5. At each node the swell is the one that gains what the node was given, and the rise is the volume over the area.
 // The same tents weigh gain and area and interpolate swell and rise, so the volume is kept to the second order of their
 // changes.
 //
 // The result depends on the toolpath alone, not on a voxel lattice. It is local: at a point it depends on beads within
-// kSpreadHalo + 1 cells and their widths, in its layer and in those that it lies on. Tiles of it are made when they are
-// first asked for.
+// kSpreadHalo + 1 cells and their widths, in its layer and in the kUpLayers before it. Tiles of it are made when they
+// are first asked for.
 #pragma once
 
 #include "gcode/toolpath/toolpath.h"
 #include "voxelize/beads/layer_stack.h"
 #include "voxelize/beads/plan_bins.h"
 #include "voxelize/beads/settling.h"
+#include "voxelize/swell/node_box.h"
 
 #include <array>
 #include <atomic>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -39,10 +41,19 @@
 
 namespace stratum::voxelize {
 
+class LayerNeeds;
+
 constexpr double kNodeSpacing = 0.4;  ///< mm
-/// Along the edge of a tile. A tile's halo is computed with it: larger ones compute less twice, and a brick waits
-/// longer.
+/// Along the edge of a tile. A tile's halo is spread with it: larger ones compute less twice, and a brick waits longer.
 constexpr int kTileCells = 32;
+/// Along the edge of a tile of sums, which nothing is computed twice for: a tile needs those around it.
+constexpr int kSumCells = 16;
+static_assert(kTileCells % kSumCells == 0);
+/// Layers of a tile: as many of LayerStack::layers, from a multiple of it on.
+constexpr std::uint32_t kTileLayers = 32;
+/// As many layers above the one where it was laid plastic may find a place, by their index too.
+constexpr std::uint32_t kUpLayers = 4;
+static_assert(kUpLayers <= kTileLayers);
 constexpr int kNear = 2;  ///< cells: about two widths of a line
 constexpr int kUp = 1;    ///< cells
 constexpr int kFar = 4;   ///< cells
@@ -58,24 +69,41 @@ constexpr std::size_t nodeIndex(int row, int width, int column) {
     return static_cast<std::size_t>(row) * static_cast<std::size_t>(width) + static_cast<std::size_t>(column);
 }
 
-/// What a tile of one layer holds, by its kTileCells + 1 nodes along each edge: sums over the tile's own cells.
+/// Where a tile lies: its nodes are those from kTileCells, or kSumCells, times x and y on, node 0 at the origin, and
+/// its layers those from kTileLayers z on.
+struct TilePlace {
+    int x = 0, y = 0;
+    std::uint32_t z = 0;
+
+    std::uint32_t firstLayer() const { return z * kTileLayers; }
+};
+
+/// What a tile's layers hold, by its kSumCells + 1 nodes along each edge: sums over the tile's own cells.
 struct TileSums {
-    static constexpr int kNodes = kTileCells + 1;
+    static constexpr int kNodes = kSumCells + 1;
     static constexpr int kLevels = 3;
     /// mm. Closer where they are small: slits between lines are full after some micrometres, so the gain of a first
     /// small swell is much larger than that of the next.
     static constexpr std::array<double, kLevels> kSwells{kMostSwell / 9, kMostSwell * 4 / 9, kMostSwell};
-    using Nodes = std::array<float, std::size_t{kNodes} * kNodes>;
-    struct Layer {
-        Nodes surplus{};                    ///< mm^3, fed less held
-        std::array<Nodes, kLevels> gain{};  ///< mm^3, where outlines move out by kSwells
-        Nodes solid{};                      ///< mm^2 of the plan with plastic; only with crowns
-        Nodes open{};                       ///< mm^2 of it with no layer welded to it from above
+    struct Node {
+        float surplus = 0;                  ///< mm^3, fed less held
+        std::array<float, kLevels> gain{};  ///< mm^3, where outlines move out by kSwells
     };
-    std::vector<std::uint32_t> layers;         ///< indices into LayerStack::layers, ascending
-    std::vector<std::unique_ptr<Layer>> sums;  ///< in the same order
+    struct Layer {
+        NodeBox box;  ///< of the nodes that are not 0; of each kind those, row by row
+        std::vector<Node> nodes;
+        std::vector<float> open;   ///< mm^2 of the plan with no layer welded to it from above; empty: none
+        std::vector<float> solid;  ///< mm^2 with plastic; only with crowns; empty: none
 
-    const Layer* of(std::uint32_t layer) const;
+        /// Of a node in the box.
+        std::size_t placeOf(int row, int column) const {
+            return nodeIndex(row - box.y0, box.x1 - box.x0, column - box.x0);
+        }
+    };
+    std::array<std::unique_ptr<Layer>, kTileLayers> layers;  ///< null: no bead is near
+
+    /// Of a layer of the tile.
+    const Layer* of(std::uint32_t layer) const { return layers[layer % kTileLayers].get(); }
 };
 
 /// What becomes of a layer at a node or a point.
@@ -95,29 +123,28 @@ public:
     static constexpr std::size_t kNodes = std::size_t{kTileCells} * kTileCells;
 
     NodeValues() = default;
-    /// `layers` ascending; `values` of each in the same order, row by row.
-    NodeValues(std::vector<std::uint32_t> layers, const std::vector<float>& values);
+    /// `values` of each of `layers`, which ascend, in the same order, row by row.
+    NodeValues(const std::vector<std::uint32_t>& layers, const std::vector<float>& values);
 
-    /// Ascending.
-    const std::vector<std::uint32_t>& layers() const { return layers_; }
-    /// The place in layers() of a layer, or of the next one; `guess` is tried first.
-    std::size_t find(std::uint32_t layer, std::size_t guess = 0) const;
-    /// 0 where the layer is left out.
-    float at(std::uint32_t layer, int i, int j) const;
-    /// Of the layer at that place.
-    float of(std::size_t place, int i, int j) const {
+    /// Whether a layer of the tile is not left out.
+    bool has(std::uint32_t layer) const { return (present_ >> layer % kTileLayers & 1) != 0; }
+    /// Of a layer that is there.
+    float of(std::uint32_t layer, int i, int j) const {
+        const auto layers = static_cast<std::size_t>(std::popcount(present_));
+        const auto place = static_cast<std::size_t>(std::popcount(present_ & ((1U << layer % kTileLayers) - 1)));
         const int block = j / kBlock * (kTileCells / kBlock) + i / kBlock;
         const int within = j % kBlock * kBlock + i % kBlock;
-        return values_[(static_cast<std::size_t>(block) * layers_.size() + place) * kBlockNodes +
+        return values_[(static_cast<std::size_t>(block) * layers + place) * kBlockNodes +
                        static_cast<std::size_t>(within)];
     }
 
     bool operator==(const NodeValues&) const = default;
 
 private:
-    std::vector<std::uint32_t> layers_;
+    std::uint32_t present_ = 0;  // bit n: the tile's layer n
     std::vector<float> values_;
 };
+static_assert(kTileLayers <= 32);
 
 /// As Swell has them.
 struct SwellTile {
@@ -133,31 +160,111 @@ Number crownDepth(Number crown, Number radius, Number d) {
     return crown * across * across / (4 * radius * radius);
 }
 
+/// Work that is done once, by the thread that comes first.
+class Once {
+public:
+    /// Does it unless it is done. False if another thread is at it.
+    template <typename Work>
+    bool doUnlessAtWork(const Work& work) {
+        State expected = State::to_do;
+        if (state_.compare_exchange_strong(expected, State::at_work)) {
+            try {
+                work();
+            } catch (...) {
+                leave(State::to_do);
+                throw;
+            }
+            leave(State::done);
+            return true;
+        }
+        return expected == State::done;
+    }
+    bool isDone() const { return state_.load() == State::done; }
+    /// Does it, or waits until it is done.
+    template <typename Work>
+    void doOrWait(const Work& work) {
+        while (!doUnlessAtWork(work)) state_.wait(State::at_work);
+    }
+
+private:
+    enum class State : std::uint8_t { to_do, at_work, done };
+    void leave(State state) {
+        state_.store(state);
+        state_.notify_all();
+    }
+    std::atomic<State> state_ = State::to_do;
+};
+
 /// Swell tiles of a print, made on demand. Shared by all threads.
 class SwellField {
 public:
-    /// The tile that owns the nodes from kTileCells x on along each axis, node 0 at the origin; null if no bead is
-    /// near. `toolpath` and `stack` are the same at each call, and the field belongs to that stack.
-    const SwellTile* tile(const gcode::Toolpath& toolpath, const LayerStack& stack, int x, int y) const;
+    SwellField();
+    ~SwellField();
+    SwellField(const SwellField&) = delete;
+    SwellField& operator=(const SwellField&) = delete;
+
+    /// The tile there; null if no bead is near. `toolpath` and `stack` are the same at each call, and the field belongs
+    /// to that stack.
+    const SwellTile* tile(const gcode::Toolpath& toolpath, const LayerStack& stack, TilePlace place) const;
 
     /// At a point of the plan (mm). Slow: for tests and measurements.
     Swell at(const gcode::Toolpath& toolpath, const LayerStack& stack, std::uint32_t layer, double x, double y) const;
 
 private:
     struct Tile {
-        std::once_flag summed, spread;
-        TileSums sums;              // until the tile and those around it are spread
-        std::atomic<int> uses = 0;  // how many of those are
+        Once spread;
         SwellTile swell;
     };
+    struct SumTile {
+        Once summed;
+        TileSums sums;              // until all tiles that need them are spread
+        std::atomic<int> uses = 0;  // how many of those are
+    };
+    // Tiles where beads are. Those at one place of the plan are made together, when the first of them is asked for.
+    template <typename Of>
+    class Tiles {
+    public:
+        void add(int x, int y) { index_.add(x, y); }
+        void finish(std::uint32_t high) {
+            high_ = high;
+            stacks_ = std::make_unique<Stack[]>(index_.size());
+        }
+        bool has(int x, int y) const { return index_.find(x, y) != PlanIndex::kNone; }
+        // Null where no bead is near.
+        Of* find(TilePlace place) const {
+            const std::uint32_t n = index_.find(place.x, place.y);
+            if (n == PlanIndex::kNone || place.z >= high_) return nullptr;
+            Stack& stack = stacks_[n];
+            std::call_once(stack.made, [&] { stack.tiles = std::make_unique<Of[]>(high_); });
+            return &stack.tiles[place.z];
+        }
+
+    private:
+        struct Stack {
+            std::once_flag made;
+            std::unique_ptr<Of[]> tiles;  // by TilePlace::z
+        };
+        PlanIndex index_;
+        std::uint32_t high_ = 0;
+        std::unique_ptr<Stack[]> stacks_;
+    };
+    struct Needed {
+        SumTile* tile = nullptr;
+        TilePlace place;
+    };
+    using AllNeeded = std::vector<Needed>;
+
     void list(const gcode::Toolpath& toolpath, const LayerStack& stack) const;
-    Tile* find(int x, int y) const;
-    const TileSums& sumsOf(const gcode::Toolpath& toolpath, const LayerStack& stack, Tile& tile, int x, int y) const;
+    AllNeeded neededBy(TilePlace place) const;
+    SwellTile spread(const LayerStack& stack, TilePlace place, const AllNeeded& needed) const;
+    void letGo(const AllNeeded& needed) const;
 
     mutable std::once_flag listed_;
     mutable std::unique_ptr<PlanBins> bins_;  // squares of two by two cells
-    mutable PlanIndex index_;                 // of tiles_
-    mutable std::unique_ptr<Tile[]> tiles_;
+    mutable std::unique_ptr<LayerNeeds> needs_;
+    mutable std::uint32_t high_ = 0;  // tiles one above the other
+    mutable Tiles<Tile> tiles_;
+    mutable Tiles<SumTile> sums_;
 };
 
 }  // namespace stratum::voxelize

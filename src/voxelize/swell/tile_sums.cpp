@@ -8,18 +8,27 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <map>
 #include <memory>
 #include <numbers>
+#include <span>
 #include <utility>
+#include <vector>
 
 namespace stratum::voxelize {
 namespace {
 
 constexpr int kNodes = TileSums::kNodes;
-constexpr int kTileColumns = kTileCells / kSquareCells;
+constexpr int kSumColumns = kSumCells / kSquareCells;
 
-using Layers = std::map<std::uint32_t, std::unique_ptr<TileSums::Layer>>;
+constexpr std::size_t kRow = std::size_t{kNodes} * NodeSums::kFields;  // values
+static_assert(sizeof(TileSums::Node) == NodeSums::kFields * sizeof(float));
+
+// A layer of TileSums at work: all nodes.
+struct WholeLayer {
+    std::array<TileSums::Node, std::size_t{kNodes} * kNodes> nodes{};
+    std::array<float, std::size_t{kNodes} * kNodes> open{}, solid{};
+    bool used = false, any_open = false, any_solid = false;
+};
 
 // The points of a column of cellLattice(), from the middle of its square.
 ColumnGrid pointsOfSquare() {
@@ -40,8 +49,8 @@ public:
 
     // Returns the points with plastic, bit c for point c.
     // `tops`: if not null, the highest plastic of the layers below at each point, mm: what this layer shares with them
-    // it does not hold. The layer's own is added.
-    std::uint64_t add(const Layer& layer, const PlanField& sides2, int first_node, TileSums::Layer& sums,
+    // it does not hold. The layer's own is added. `sums`: null for a layer of another tile.
+    std::uint64_t add(const Layer& layer, const PlanField& sides2, int first_node, WholeLayer* sums,
                       PlanField* tops) const {
         thread_local PressedLayer pressed;
         const auto radius = static_cast<float>(layer.radius);
@@ -49,34 +58,37 @@ public:
         pressLayer(sides2, radius, straight, pressed);
         if (pressed.kind == PressedLayer::Kind::nothing) return 0;
         if (pressed.kind == PressedLayer::Kind::flat) {
+            pressed.solid = kAllPoints;
             const float held = straight + 2 * radius;
             if (tops == nullptr) {
-                addFlat(-held, first_node, sums.surplus);
+                if (sums != nullptr)
+                    addFlat(
+                        first_node, [&](std::size_t node) -> float& { return sums->nodes[node].surplus; }, -held);
                 return kAllPoints;
             }
             for (PlanField& gain : pressed.fields) gain = {};
-            std::fill(std::begin(pressed.fields[0].v), std::end(pressed.fields[0].v), held);
-            pressed.solid = kAllPoints;
+            std::fill(std::begin(pressed.fields[0].v), std::end(pressed.fields[0].v), -held);
         }
         if (tops != nullptr) takeShared(layer, pressed.fields[0], *tops);
-        const NodeSums::Sums by_node = nodes_.of(pressed.fields);
-        for (std::size_t node = 0; node < NodeSums::kNodes; ++node) {
-            const std::size_t place = placeOf(first_node, node);
-            sums.surplus[place] -= by_node[node][0];
-            for (std::size_t level = 0; level < sums.gain.size(); ++level)
-                sums.gain[level][place] += by_node[node][1 + level];
-        }
+        if (sums != nullptr)
+            nodes_.add(pressed.fields, &sums->nodes[static_cast<std::size_t>(first_node)].surplus, kRow);
         return pressed.solid;
     }
 
     // The area of a top, with `solid` points of which `open` have nothing on them. Of one with a crown, also that of
     // its plastic, and what the crown takes is left over. `nearest`, `sides2`: used only then.
     void addTop(const Layer& layer, std::uint64_t solid, std::uint64_t open, const PlanField& nearest,
-                const PlanField& sides2, int first_node, TileSums::Layer& sums) const {
+                const PlanField& sides2, int first_node, WholeLayer& sums) const {
         const bool crowned = layer.crown > 0;
         if (!crowned && open == 0) return;
-        if (!crowned && open == kAllPoints) return addFlat(1, first_node, sums.open);
-        if (crowned && open == 0 && solid == kAllPoints) return addFlat(1, first_node, sums.solid);
+        sums.any_open |= open != 0;
+        sums.any_solid |= crowned;
+        const auto addOnes = [&](auto& values) {
+            addFlat(
+                first_node, [&](std::size_t node) -> float& { return values[node]; }, 1);
+        };
+        if (!crowned && open == kAllPoints) return addOnes(sums.open);
+        if (crowned && open == 0 && solid == kAllPoints) return addOnes(sums.solid);
         thread_local std::array<PlanField, NodeSums::kFields> fields;
         const auto ones = [this](std::uint64_t points, PlanField& field) {
             for (std::size_t c = 0; c < kColumnSamples; c += 8)
@@ -93,7 +105,7 @@ public:
             const std::size_t place = placeOf(first_node, node);
             sums.open[place] += by_node[node][0];
             sums.solid[place] += by_node[node][1];
-            sums.surplus[place] += by_node[node][2];
+            sums.nodes[place].surplus += by_node[node][2];
         }
     }
 
@@ -106,17 +118,20 @@ private:
         return static_cast<std::size_t>(first_node) + node % kSide + node / kSide * kRow;
     }
 
-    void addFlat(float height, int first_node, TileSums::Nodes& nodes) const {
+    template <typename ValueOf>
+    void addFlat(int first_node, const ValueOf& value_of, float height) const {
         for (std::size_t node = 0; node < NodeSums::kNodes; ++node)
-            nodes[placeOf(first_node, node)] += height * nodes_.area(node);
+            value_of(placeOf(first_node, node)) += height * nodes_.area(node);
     }
 
-    static void takeShared(const Layer& layer, PlanField& held, PlanField& tops) {
+    // `lost`: what the layer holds, below 0.
+    static void takeShared(const Layer& layer, PlanField& lost, PlanField& tops) {
         const auto center = static_cast<float>(layer.center_z);
         for (std::size_t c = 0; c < kColumnSamples; ++c) {
-            const float half = 0.5F * held.v[c];
+            const float held = -lost.v[c];
+            const float half = 0.5F * held;
             if (!(half > 0)) continue;
-            held.v[c] -= std::clamp(tops.v[c] - (center - half), 0.0F, held.v[c]);
+            lost.v[c] += std::clamp(tops.v[c] - (center - half), 0.0F, held);
             tops.v[c] = std::max(tops.v[c], center + half);
         }
     }
@@ -149,10 +164,10 @@ private:
 // Lays a bead's volume along its path, evenly over the width of a box of its height.
 class Feeder {
 public:
-    Feeder(const gcode::Toolpath& toolpath, const LayerStack& stack, int x, int y)
-        : toolpath_(toolpath), stack_(stack), first_x_(x * kTileCells), first_y_(y * kTileCells) {}
+    Feeder(const gcode::Toolpath& toolpath, const LayerStack& stack, TilePlace place)
+        : toolpath_(toolpath), stack_(stack), first_x_(place.x * kSumCells), first_y_(place.y * kSumCells) {}
 
-    void feed(std::uint32_t rank, TileSums::Layer& sums) const {
+    void feed(std::uint32_t rank, WholeLayer& sums) const {
         const std::uint32_t index = stack_.beads[rank];
         const gcode::Bead& bead = toolpath_.beads[index];
         const double volume = gcode::laidVolume(toolpath_, index);
@@ -166,27 +181,28 @@ public:
         const double along = volume - at_ends;
         const double width = along / (height * length);
         const int steps = std::max(static_cast<int>(std::ceil(length / kStep)), 1);
-        const double part = along / (steps * kAcross);
+        const double part = along / (steps * static_cast<double>(kAcross.size()));
         const auto [from, to] = stepsInTile(bead, length, width, steps);
         for (int n = from; n < to; ++n) {
             const Place place = placeAt(path, (n + 0.5) / steps, length);
-            for (int m = 0; m < kAcross; ++m) {
-                const double aside = ((m + 0.5) / kAcross - 0.5) * width;
-                addPoint(place.x - aside * place.uy, place.y + aside * place.ux, part, sums.surplus);
+            for (const double side : kAcross) {
+                const double aside = side * width;
+                addPoint(place.x - aside * place.uy, place.y + aside * place.ux, part, sums);
             }
         }
     }
 
 private:
     static constexpr double kStep = 0.5 * kNodeSpacing;
-    static constexpr int kAcross = 4;
+    // Of a width: evenly, so that parallel lines lay the same everywhere.
+    static constexpr std::array<double, 3> kAcross{-1.0 / 3, 0, 1.0 / 3};
     struct Place {
         double x, y, ux, uy;
     };
 
     // Where the flow is simulated, the half discs at free ends are part of a bead's volume: lays them there, and
     // returns their volume.
-    double feedEnds(std::uint32_t index, double volume, const gcode::PlanPath& path, TileSums::Layer& sums) const {
+    double feedEnds(std::uint32_t index, double volume, const gcode::PlanPath& path, WholeLayer& sums) const {
         const gcode::Bead& bead = toolpath_.beads[index];
         const double discs = volume - gcode::beadVolume(toolpath_, bead);
         if (toolpath_.flow.empty() || !(path.length() > 0) || !(discs > 0) || discs > 0.5 * volume) return 0;
@@ -204,10 +220,10 @@ private:
             if (!(at_end ? free_end : free_start)) continue;
             const Place place = placeAt(path, at_end ? 1 : 0, 0);
             const double sign = at_end ? past : -past;
-            for (int m = 0; m < kAcross; ++m) {
-                const double aside = ((m + 0.5) / kAcross - 0.5) * 0.8 * width;
+            for (const double side : kAcross) {
+                const double aside = side * 0.8 * width;
                 addPoint(place.x + sign * place.ux - aside * place.uy, place.y + sign * place.uy + aside * place.ux,
-                         discs / (ends * kAcross), sums.surplus);
+                         discs / (ends * static_cast<double>(kAcross.size())), sums);
             }
         }
         return discs;
@@ -233,7 +249,7 @@ private:
         const double more = width + length / steps;
         const auto clip = [&](double from, double to, int first) {
             const double least = first * kNodeSpacing - more;
-            const double most = (first + kTileCells) * kNodeSpacing + more;
+            const double most = (first + kSumCells) * kNodeSpacing + more;
             if (std::abs(to - from) < more) return;
             const double a = (least - from) / (to - from);
             const double b = (most - from) / (to - from);
@@ -248,19 +264,20 @@ private:
     }
 
     // Each point lies in one cell of one tile.
-    void addPoint(double x, double y, double volume, TileSums::Nodes& nodes) const {
-        const double in_x = x / kNodeSpacing - first_x_;
-        const double in_y = y / kNodeSpacing - first_y_;
-        if (!(in_x >= 0 && in_x < kTileCells && in_y >= 0 && in_y < kTileCells)) return;
+    void addPoint(double x, double y, double volume, WholeLayer& sums) const {
+        const double in_x = x * (1 / kNodeSpacing) - first_x_;
+        const double in_y = y * (1 / kNodeSpacing) - first_y_;
+        if (!(in_x >= 0 && in_x < kSumCells && in_y >= 0 && in_y < kSumCells)) return;
         const int i = static_cast<int>(in_x);
         const int j = static_cast<int>(in_y);
         const double fx = nodeShare(in_x - i);
         const double fy = nodeShare(in_y - j);
         const std::size_t at = nodeIndex(j, kNodes, i);
-        nodes[at] += static_cast<float>(volume * (1 - fx) * (1 - fy));
-        nodes[at + 1] += static_cast<float>(volume * fx * (1 - fy));
-        nodes[at + kNodes] += static_cast<float>(volume * (1 - fx) * fy);
-        nodes[at + kNodes + 1] += static_cast<float>(volume * fx * fy);
+        TileSums::Node* const node = &sums.nodes[at];
+        node[0].surplus += static_cast<float>(volume * (1 - fx) * (1 - fy));
+        node[1].surplus += static_cast<float>(volume * fx * (1 - fy));
+        node[kNodes].surplus += static_cast<float>(volume * (1 - fx) * fy);
+        node[kNodes + 1].surplus += static_cast<float>(volume * fx * fy);
     }
 
     const gcode::Toolpath& toolpath_;
@@ -268,48 +285,87 @@ private:
     const int first_x_, first_y_;  // nodes
 };
 
-TileSums::Layer& sumsOf(Layers& layers, std::uint32_t layer) {
-    std::unique_ptr<TileSums::Layer>& sums = layers[layer];
-    if (sums == nullptr) sums = std::make_unique<TileSums::Layer>();
-    return *sums;
+// Of the nodes that are not 0.
+NodeBox boxOf(const WholeLayer& sums) {
+    NodeBox box;
+    for (int row = 0; row < kNodes; ++row) {
+        int first = kNodes;
+        int last = -1;
+        for (int column = 0; column < kNodes; ++column) {
+            const std::size_t n = nodeIndex(row, kNodes, column);
+            // All but the surplus are 0 or more.
+            const float sum =
+                std::abs(sums.nodes[n].surplus) + sums.nodes[n].gain.back() + sums.open[n] + sums.solid[n];
+            if (!(sum > 0)) continue;
+            first = std::min(first, column);
+            last = column;
+        }
+        if (last >= 0) box = box.with({first, last + 1, row, row + 1});
+    }
+    return box;
 }
 
-// Layers that reach into each other, such as threads of bridges and what they lie on. Most reach into none.
-class LayerOverlaps {
+// What is not 0 of it.
+std::unique_ptr<TileSums::Layer> keep(const WholeLayer& sums) {
+    auto kept = std::make_unique<TileSums::Layer>();
+    const NodeBox box = kept->box = boxOf(sums);
+    if (box.empty()) return nullptr;
+    const auto copy = [&box](const auto& from, auto& to) {
+        to.reserve(static_cast<std::size_t>(box.x1 - box.x0) * static_cast<std::size_t>(box.y1 - box.y0));
+        for (int row = box.y0; row < box.y1; ++row) {
+            const auto first = from.begin() + static_cast<std::ptrdiff_t>(nodeIndex(row, kNodes, 0));
+            to.insert(to.end(), first + box.x0, first + box.x1);
+        }
+    };
+    copy(sums.nodes, kept->nodes);
+    if (sums.any_open) copy(sums.open, kept->open);
+    if (sums.any_solid) copy(sums.solid, kept->solid);
+    return kept;
+}
+
+// Which layers the sums of a tile are made of, and the ranks of their beads. Of one tile.
+class TileLayers {
 public:
-    explicit LayerOverlaps(const LayerStack& stack) : takes_(stack.layers.size()), gives_(stack.layers.size()) {
-        double top = std::numeric_limits<double>::lowest();
-        for (std::size_t n = 0; n < takes_.size(); ++n) {
-            const Layer& layer = stack.layers[n];
-            takes_[n] = layer.bottom() + 2 * kWeldGap * layer.halfHeight() < top;
-            top = std::max(top, topOf(layer));
-            any_ = any_ || takes_[n];
-        }
-        double bottom = std::numeric_limits<double>::max();
-        for (std::size_t n = takes_.size(); n-- > 0;) {
-            gives_[n] = topOf(stack.layers[n]) > bottom;
-            if (takes_[n]) bottom = std::min(bottom, stack.layers[n].bottom());
-        }
+    TileLayers(const LayerStack& stack, const LayerNeeds& needs, TilePlace place)
+        : stack_(stack),
+          others_(needs.ofOthers(place.z)),
+          first_(place.firstLayer()),
+          last_(static_cast<std::uint32_t>(std::min<std::size_t>(first_ + kTileLayers, stack.layers.size()))) {}
+
+    bool owns(std::uint32_t layer) const { return layer >= first_ && layer < last_; }
+    bool needs(std::uint32_t layer) const {
+        return owns(layer) || std::binary_search(others_.begin(), others_.end(), layer);
     }
-    bool any() const { return any_; }
-    // Whether a layer begins clearly below the top of one before it.
-    bool takes(std::uint32_t layer) const { return takes_[layer]; }
-    // Whether one behind it that takes begins below its top.
-    bool gives(std::uint32_t layer) const { return gives_[layer]; }
+    // Of a column's ranks those of the tile's own layers; ranks ascend with their layers.
+    std::span<const std::uint32_t> ownOf(std::span<const std::uint32_t> ranks) const {
+        const auto from = std::lower_bound(ranks.begin(), ranks.end(), firstRank());
+        auto to = from;
+        while (to != ranks.end() && *to < stack_.layers[last_ - 1].last) ++to;
+        return {from, to};
+    }
+    // Of all layers that are needed; some between them may not be. `own`: of ownOf().
+    std::span<const std::uint32_t> neededOf(std::span<const std::uint32_t> ranks,
+                                            std::span<const std::uint32_t> own) const {
+        if (others_.empty()) return own;
+        std::size_t first = static_cast<std::size_t>(own.data() - ranks.data());
+        std::size_t last = first + own.size();
+        while (first > 0 && ranks[first - 1] >= stack_.layers[others_.front()].first) --first;
+        while (last < ranks.size() && ranks[last] < stack_.layers[others_.back()].last) ++last;
+        return ranks.subspan(first, last - first);
+    }
+    // The first rank of the tile's own beads, and how many there are in all of the plan.
+    std::uint32_t firstRank() const { return stack_.layers[first_].first; }
+    std::uint32_t rankCount() const { return stack_.layers[last_ - 1].last - firstRank(); }
 
 private:
-    // Before it is raised.
-    static double topOf(const Layer& layer) { return layer.center_z + layer.halfHeight(); }
-
-    std::vector<bool> takes_, gives_;
-    bool any_ = false;
+    const LayerStack& stack_;
+    const std::span<const std::uint32_t> others_;
+    const std::uint32_t first_, last_;
 };
 
-// Of a top in a column, in the order of the tops.
+// Of the top of a layer with a crown.
 struct TopFields {
-    TileSums::Layer* sums = nullptr;
-    std::uint64_t solid = 0;
-    PlanField sides2, nearest;  // only with a crown
+    PlanField sides2, nearest;
 };
 
 }  // namespace
@@ -321,58 +377,66 @@ Lattice cellLattice() {
     return lattice;
 }
 
-TileSums sumTile(const gcode::Toolpath& toolpath, const LayerStack& stack, const PlanBins& bins, int x, int y) {
+TileSums sumTile(const gcode::Toolpath& toolpath, const LayerStack& stack, const LayerNeeds& needs,
+                 const PlanBins& bins, TilePlace place) {
     static const ColumnSums kSums;
     const Lattice lattice = cellLattice();
+    const TileLayers own(stack, needs, place);
     LeafColumn column(toolpath, stack, lattice, 1, LeafColumn::Kind::spread_without_swell);
-    Layers layers;
-    std::vector<std::uint32_t> ranks;
+    thread_local std::array<WholeLayer, kTileLayers> whole;
+    const auto sumsOf = [](std::uint32_t layer) -> WholeLayer& {
+        WholeLayer& sums = whole[layer % kTileLayers];
+        if (!sums.used) sums = {};
+        sums.used = true;
+        return sums;
+    };
+    for (WholeLayer& sums : whole) sums.used = false;
+    std::vector<bool> feeds(own.rankCount());  // by rank from firstRank() on: whether the bead is near
     std::vector<OpenTop> tops;
-    std::vector<TopFields> fields;
-    const LayerOverlaps overlaps(stack);
+    std::vector<TopFields> fields;  // of tops, where they have crowns
     PlanField highest;
-    for (int cj = 0; cj < kTileColumns; ++cj)
-        for (int ci = 0; ci < kTileColumns; ++ci) {
-            const std::size_t bin = bins.find(x * kTileColumns + ci, y * kTileColumns + cj);
+    for (int cj = 0; cj < kSumColumns; ++cj)
+        for (int ci = 0; ci < kSumColumns; ++ci) {
+            const std::size_t bin = bins.find(place.x * kSumColumns + ci, place.y * kSumColumns + cj);
             if (bin == PlanBins::kNone) continue;
-            ranks.insert(ranks.end(), bins[bin].begin(), bins[bin].end());
-            column.open(bins.originI(bin), bins.originJ(bin), bins[bin], std::numeric_limits<std::uint32_t>::max());
+            const std::span<const std::uint32_t> near = own.ownOf(bins[bin]);
+            if (near.empty()) continue;
+            for (const std::uint32_t rank : near) feeds[rank - own.firstRank()] = true;
+            column.open(bins.originI(bin), bins.originJ(bin), own.neededOf(bins[bin], near),
+                        std::numeric_limits<std::uint32_t>::max());
             const int first_node = kSquareCells * (cj * kNodes + ci);
-            if (overlaps.any())
+            if (needs.anyOverlap())
                 std::fill(std::begin(highest.v), std::end(highest.v), std::numeric_limits<float>::lowest());
             tops.clear();
-            column.forEachSides([&](std::uint32_t layer, const PlanField& sides2, const PlanField& nearest) {
+            const auto needed = [&own](std::uint32_t layer) { return own.needs(layer); };
+            column.forEachSides(needed, [&](std::uint32_t layer, const PlanField& sides2, const PlanField& nearest) {
                 const Layer& of = stack.layers[layer];
-                TileSums::Layer& sums = sumsOf(layers, layer);
-                PlanField* const tops_below = overlaps.takes(layer) || overlaps.gives(layer) ? &highest : nullptr;
+                WholeLayer* const sums = own.owns(layer) ? &sumsOf(layer) : nullptr;
+                PlanField* const tops_below = needs.takes(layer) || needs.gives(layer) ? &highest : nullptr;
                 const std::uint64_t solid = kSums.add(of, sides2, first_node, sums, tops_below);
                 if (solid == 0) return;
                 addTop(layer, solid, tops);
-                if (tops.size() > fields.size()) fields.emplace_back();
-                TopFields& top = fields[tops.size() - 1];
-                top.sums = &sums;
-                top.solid = solid;
-                if (!(of.crown > 0)) return;
-                top.sides2 = sides2;
-                top.nearest = nearest;
+                if (sums == nullptr || !(of.crown > 0)) return;
+                if (tops.size() > fields.size()) fields.resize(tops.size());
+                fields[tops.size() - 1] = {sides2, nearest};
             });
             coverTops(stack, tops);
+            fields.resize(std::max(fields.size(), tops.size()));
             for (std::size_t n = 0; n < tops.size(); ++n) {
-                const TopFields& top = fields[n];
-                kSums.addTop(stack.layers[tops[n].layer], top.solid, tops[n].open, top.nearest, top.sides2, first_node,
-                             *top.sums);
+                const OpenTop& top = tops[n];
+                if (!own.owns(top.layer)) continue;
+                kSums.addTop(stack.layers[top.layer], top.solid, top.open, fields[n].nearest, fields[n].sides2,
+                             first_node, sumsOf(top.layer));
             }
         }
-    std::sort(ranks.begin(), ranks.end());
-    ranks.erase(std::unique(ranks.begin(), ranks.end()), ranks.end());
-    const Feeder feeder(toolpath, stack, x, y);
-    for (const std::uint32_t rank : ranks)
-        if (rank < stack.first_direct) feeder.feed(rank, sumsOf(layers, stack.layer[rank]));
-    TileSums tile;
-    for (auto& [layer, sums] : layers) {
-        tile.layers.push_back(layer);
-        tile.sums.push_back(std::move(sums));
+    const Feeder feeder(toolpath, stack, place);
+    for (std::uint32_t n = 0; n < feeds.size(); ++n) {
+        const std::uint32_t rank = own.firstRank() + n;
+        if (feeds[n]) feeder.feed(rank, sumsOf(stack.layer[rank]));
     }
+    TileSums tile;
+    for (std::size_t n = 0; n < whole.size(); ++n)
+        if (whole[n].used) tile.layers[n] = keep(whole[n]);
     return tile;
 }
 

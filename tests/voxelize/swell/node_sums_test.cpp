@@ -65,10 +65,10 @@ TEST(PressedLayer, HoldsAndGainsWhatTheSectionDoes) {
         const double side = std::sqrt(static_cast<double>(sides2.v[c]));
         for (std::size_t n = 0; n < PressedLayer::kFields; ++n) {
             const double moved = std::max(side - (n > 0 ? TileSums::kSwells[n - 1] : 0), 0.0);
-            const double expected = thickness(moved) - (n > 0 ? thickness(side) : 0);
+            const double expected = n > 0 ? thickness(moved) - thickness(side) : -thickness(side);
             EXPECT_NEAR(pressed.fields[n].v[c], expected, std::abs(moved - 0.1) < 5e-4 ? 0.07 : 1e-6) << c << " " << n;
         }
-        EXPECT_EQ(pressed.solid >> c & 1, pressed.fields[0].v[c] > 0 ? 1U : 0U);
+        EXPECT_EQ(pressed.solid >> c & 1, pressed.fields[0].v[c] < 0 ? 1U : 0U);
     }
     sides2 = {};
     pressLayer(sides2, 0.1F, 0.06F, pressed);
@@ -104,6 +104,22 @@ TEST(SwellKernels, InterpolateAndCrownAsDefined) {
         EXPECT_NEAR(values.v[c], expected, 1e-7) << c;
         const double depth = crownDepth(0.04, 0.1, static_cast<double>(nearest.v[c]));
         EXPECT_NEAR(lowered.v[c], expected * (1 - depth), 1e-7) << c;
+    }
+}
+
+TEST(NodeSums, GoToARowOfEachKind) {
+    std::vector<TileSums::Node> nodes(39);
+    for (std::size_t n = 0; n < nodes.size(); ++n) {
+        const auto value = static_cast<float>(n);
+        nodes[n] = {value, {100 + value, 200 + value, 300 + value}};
+    }
+    std::vector<float> rows[4];
+    for (std::vector<float>& row : rows) row.assign(nodes.size() + 1, 0.5F);
+    addNodes(nodes, rows[0].data(), rows[1].data(), rows[2].data(), rows[3].data());
+    for (std::size_t kind = 0; kind < 4; ++kind) {
+        for (std::size_t n = 0; n < nodes.size(); ++n)
+            EXPECT_EQ(rows[kind][n], 100 * static_cast<float>(kind) + static_cast<float>(n) + 0.5F);
+        EXPECT_EQ(rows[kind].back(), 0.5F) << "beyond the row";
     }
 }
 

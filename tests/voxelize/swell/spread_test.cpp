@@ -22,7 +22,7 @@ SpreadNodes outline(double most) {
     return nodes;
 }
 Spread spreadSurplus(const SpreadNodes& nodes, double most_rise) {
-    return Spreading(kEdge).spread(nodes, nodes.box(), NodeBox::all(kEdge), most_rise);
+    return Spreading(kEdge).spread(nodes, NodeBox::all(kEdge), NodeBox::all(kEdge), most_rise);
 }
 double sum(const std::vector<float>& values) { return std::accumulate(values.begin(), values.end(), 0.0); }
 
@@ -138,7 +138,9 @@ TEST(SpreadSurplus, TheWantedNodesAreRightInAnyOrder) {
     Spreading one(kEdge);
     for (const std::size_t n : {3, 0, 7, 1, 5, 2, 6, 4, 0}) {
         const Spread whole = spreadSurplus(layers[n], 0.05);
-        const Spread& part = one.spread(layers[n], layers[n].box(), wanted, 0.05);
+        const auto step = static_cast<int>(n);
+        const NodeBox box{2 * step, kEdge - step, step, kEdge - 3 * step};
+        const Spread& part = one.spread(layers[n], box, wanted, 0.05);
         for (int j = wanted.y0; j < wanted.y1; ++j)
             for (int i = wanted.x0; i < wanted.x1; ++i) {
                 const std::size_t at = nodeAt(i, j);

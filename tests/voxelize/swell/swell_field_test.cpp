@@ -299,22 +299,46 @@ TEST(SwellField, IsBoundedAndGentle) {
 }
 
 TEST(SwellField, DoesNotDependOnTheOrderOfItsTiles) {
-    gcode::Toolpath toolpath = sparse();
+    // Two tiles high.
+    gcode::Toolpath toolpath = solid(0.93, kTileLayers + 6);
     toolpath.deposit.beads = DepositModel::Beads::settled;
+    toolpath.deposit.crown = 0.2;
     const LayerStack one = stackLayers(toolpath, test::allBeads(toolpath));
     const LayerStack other = stackLayers(toolpath, test::allBeads(toolpath));
-    for (int n = -2; n <= 2; ++n)
-        for (int m = -2; m <= 2; ++m) one.swell->tile(toolpath, one, n, m);
-    for (int n = 2; n >= -2; --n)
-        for (int m = 2; m >= -2; --m) {
-            const SwellTile* a = one.swell->tile(toolpath, one, m, n);
-            const SwellTile* b = other.swell->tile(toolpath, other, m, n);
-            ASSERT_EQ(a == nullptr, b == nullptr);
-            if (a == nullptr) continue;
-            EXPECT_EQ(a->out, b->out);
-            EXPECT_EQ(a->rise, b->rise);
-            EXPECT_EQ(a->open, b->open);
-        }
+    std::vector<TilePlace> places;
+    for (const std::uint32_t z : {0, 1, 2})
+        for (int n = -2; n <= 2; ++n)
+            for (int m = -2; m <= 2; ++m) places.push_back({n, m, z});
+    for (const TilePlace& place : places) one.swell->tile(toolpath, one, place);
+    int made = 0;
+    for (auto place = places.rbegin(); place != places.rend(); ++place) {
+        const SwellTile* a = one.swell->tile(toolpath, one, *place);
+        const SwellTile* b = other.swell->tile(toolpath, other, *place);
+        ASSERT_EQ(a == nullptr, b == nullptr);
+        if (a == nullptr) continue;
+        ++made;
+        EXPECT_EQ(a->out, b->out);
+        EXPECT_EQ(a->rise, b->rise);
+        EXPECT_EQ(a->open, b->open);
+    }
+    EXPECT_GT(made, 20);
+    EXPECT_EQ(one.swell->tile(toolpath, one, {0, 0, 2}), nullptr) << "above the print";
+}
+
+// What a layer can't take goes on through the border of two tiles: the top of a block that is fed too much rises as far
+// where it lies in the first layer of a tile as where it lies in the last.
+TEST(SwellField, WhatMovesUpPassesBordersOfTiles) {
+    const auto raisedOf = [](int layers) {
+        gcode::Toolpath toolpath = solid(0.97, layers);
+        return balanceOf(toolpath).raised;
+    };
+    const int border = static_cast<int>(kTileLayers);
+    const double last = raisedOf(border);
+    EXPECT_GT(last, 1.5 * raisedOf(2)) << "nothing comes from far below";
+    for (const int layers : {border + 1, border + 2, border + 3}) {
+        std::printf("  %d layers: %.4f mm3, %d: %.4f mm3\n", border, last, layers, raisedOf(layers));
+        EXPECT_NEAR(raisedOf(layers), last, 0.05 * last) << layers;
+    }
 }
 
 // Tiles are kept where beads are, not over the rectangle: 19 m apart it would have 1e8 of them.

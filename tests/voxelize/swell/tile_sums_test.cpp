@@ -23,12 +23,16 @@ Totals totalsOf(gcode::Toolpath& toolpath) {
     const LayerStack stack = stackLayers(toolpath, test::allBeads(toolpath));
     const PlanBins bins(toolpath, stack, cellLattice(), std::numeric_limits<std::size_t>::max());
     Totals totals;
-    for (int y = -4; y <= 4; ++y)
-        for (int x = -4; x <= 4; ++x) {
-            const TileSums tile = sumTile(toolpath, stack, bins, x, y);
-            for (const auto& layer : tile.sums) {
-                for (const float value : layer->surplus) totals.surplus += static_cast<double>(value);
-                for (const float value : layer->gain.back()) totals.gain += static_cast<double>(value);
+    const LayerNeeds needs(stack);
+    for (int y = -8; y <= 8; ++y)
+        for (int x = -8; x <= 8; ++x) {
+            const TileSums tile = sumTile(toolpath, stack, needs, bins, {x, y, 0});
+            for (const auto& layer : tile.layers) {
+                if (layer == nullptr) continue;
+                for (const TileSums::Node& node : layer->nodes) {
+                    totals.surplus += static_cast<double>(node.surplus);
+                    totals.gain += static_cast<double>(node.gain.back());
+                }
             }
         }
     return totals;
