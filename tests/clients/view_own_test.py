@@ -187,14 +187,14 @@ def comes_into_sight():
                 near += moving[k] && Math.abs(depth(all[k]) - depth(moving[k])) < 2;
               }
               at("pointerup", 100);
-              return { hits, same: same / hits, near: near / hits, drawn, texels: table.texels };
+              return { hits, same: same / hits, near: near / hits, drawn, beads: table.count };
             };""")
         for quick in (False, True):
             found = page.execute_async_script("const done = arguments[1]; window.turn(arguments[0]).then(done)", quick)
             print(f"in sight, {'quick' if quick else 'as at rest'}: {found}")
             check(found["hits"] > 1000 and found["near"] >= (0.93 if quick else 0.99), f"beads of a moving picture: {found}")
             check(quick or found["same"] >= 0.99, f"the right ones: {found}")
-            check(found["drawn"] < 0.6 * found["texels"], f"and not all of them: {found}")
+            check(found["drawn"] < 0.6 * found["beads"], f"and not all of them: {found}")
 
 
 def picks():

@@ -21,8 +21,8 @@ export class BeadRenderer {
     this.table = table;
     this.canvas = canvas;
     const most = gl.getParameter(gl.MAX_TEXTURE_SIZE);
-    if (most < ROW || table.texels > ROW * most) throw new Error("too many beads for its textures");
-    this.visible = new VisibleBeads(table.texels);
+    if (most < ROW || table.words.length / 4 > ROW * most) throw new Error("too many beads for its textures");
+    this.visible = new VisibleBeads(table.count);
     this.coarse = new Map(); // sets of CoarseBeads
     const { kinds } = table;
     this.beads = makeProgram(gl, beadVertices(kinds), beadFragments(kinds));
@@ -62,7 +62,7 @@ export class BeadRenderer {
     gl.bindFramebuffer(gl.FRAMEBUFFER, this.found);
     gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0, gl.TEXTURE_2D, found, 0);
     this.size = [0, 0];
-    this.range = [0, table.texels];
+    this.end = table.count;
     this.look = null;
     this.lines = new LineRenderer(gl);
     if (gl.getError()) throw new Error("not enough memory on its GPU");
@@ -73,13 +73,13 @@ export class BeadRenderer {
     release(this.gl);
   }
 
-  /** By run, which are shown; and the texels from, to that are printed. */
-  show(shown, range) {
+  /** By run, which are shown; and how many beads are printed. */
+  show(shown, end) {
     fillTable(this.gl, this.textures.shown, shown, 1);
-    this.range = range;
+    this.end = end;
   }
 
-  /** Colours by texel, as places in a palette of [r, g, b], linear; null: one for all. */
+  /** Colours by bead, as places in a palette of [r, g, b], linear; null: one for all. */
   paint(places, palette) {
     const gl = this.gl;
     this.colored = places !== null;
@@ -133,7 +133,7 @@ export class BeadRenderer {
       eye: sub(camera.eye, low), grain, right: camera.right, up: camera.up, forward: camera.forward,
       slope: [(tangent * this.size[0]) / this.size[1], tangent],
       cut: [...normal, cut[3] / length - dot(normal, camera.eye)],
-      size: this.size, texels: this.range,
+      size: this.size, total: this.table.count, end: this.end,
     };
   }
 
@@ -156,12 +156,8 @@ export class BeadRenderer {
       gl.clearBufferfv(gl.DEPTH, 0, [0]);
       this.#drawList(this.beads, 1);
     }
-    for (let n = 0; n < parts; ++n) {
-      const part = this.visible.part();
-      if (!part) break;
-      this.#drawBeads(this.beads, 1, false, ...part);
-    }
-    return this.visible.partsLeft === 0;
+    for (let n = 0; n < parts && !this.visible.complete; ++n) this.#drawBeads(this.beads, 1, false, ...this.visible.part());
+    return this.visible.complete;
   }
 
   /** Shows what was collected. */
@@ -224,7 +220,7 @@ export class BeadRenderer {
     if (!this.coarse.has(key)) this.coarse.set(key, new CoarseBeads(this.table, stride, tolerance));
     const coarse = Object.assign(this.coarse.get(key), { few });
     if (coarse === old) return old;
-    fillTable(this.gl, this.textures.coarse, coarse.texels, 1);
+    fillTable(this.gl, this.textures.coarse, coarse.beads, 1);
     fillTable(this.gl, this.textures.ends, coarse.ends, 1);
     this.visible.standFor(coarse);
     this.#bind();
@@ -329,8 +325,8 @@ export class BeadRenderer {
     const found = new Uint32Array(rows * ROW);
     gl.readPixels(0, 0, ROW, rows, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(found.buffer));
     for (let n = 0; n < count; ++n) {
-      const texel = coarse ? coarse.texels[first + n] : first + n;
-      if (found[n]) this.visible.expect(texel, texel + 1);
+      const bead = coarse ? coarse.beads[first + n] : first + n;
+      if (found[n]) this.visible.expect(bead, bead + 1);
     }
   }
 
@@ -344,7 +340,7 @@ export class BeadRenderer {
     this.visible.seen(this.ids(0, 0, ...this.size));
   }
 
-  /** Which texel + 1 is at each pixel of a rectangle, from below; 0: none. */
+  /** Which bead + 1 is at each pixel of a rectangle, from below; 0: none. */
   ids(x, y, width, height) {
     const gl = this.gl;
     gl.bindFramebuffer(gl.FRAMEBUFFER, this.target);

@@ -1,6 +1,7 @@
 // Beside the picture: what the machine does besides beads, the layer's height and time, and its moves with their lines.
 import { clock, linesOf } from "./answer.js";
 import { byId, checkbox, element, follow, swatch } from "./elements.js";
+import { withOrWithout } from "./state.js";
 import { KINDS } from "./move_table.js";
 
 export class MotionPanel {
@@ -10,15 +11,18 @@ export class MotionPanel {
   #waits = false; // for its answer
   #parts = { layer: 0, list: [] }; // beads of the layer, [first, end]
 
-  /** own: the browser's own picture; send(message): to the server. The others as those of Controls. */
-  constructor({ state, changed, hold, own, send }) {
-    Object.assign(this, { state, changed, hold, own, send });
+  /** page: see main.js. */
+  constructor(page) {
+    this.page = page;
+    this.own = page.own;
     byId("also").replaceChildren(...[...KINDS, ["bed and grid of 10 mm", "#1973cc"]].map(([name, color]) =>
-      checkbox(name, (box) => this.toggle(name, box.checked), swatch(color), name, element("output"))));
+      checkbox(name, (on) => this.toggle(name, on), swatch(color), name, element("output"))));
     byId("layers-group").addEventListener("focusin", () => this.#askLayers());
     byId("layers-group").addEventListener("input", () => this.#askLayers());
     byId("moves-group").addEventListener("toggle", () => this.show());
     follow(byId("moves"), (move, moving) => this.#move(move, moving));
+    page.connection.on("program", (program) => this.#setProgram(program));
+    page.connection.on("refused", () => this.#setProgram(null)); // that may be what was asked for
   }
 
   /** The file was read, perhaps anew. */
@@ -38,25 +42,24 @@ export class MotionPanel {
     this.#layers = layers;
     this.show();
   }
-  setProgram(program) {
+  #setProgram(program) {
     this.#waits = false;
     if (program) byId("program").replaceChildren(linesOf(program.lines, program.line));
     this.#follow();
   }
 
-  toggle(name, on = !this.state().also.includes(name)) {
-    this.state().also = this.state().also.filter((each) => each !== name).concat(on ? [name] : []);
-    this.changed(false);
+  toggle(name, on = !this.page.state.also.includes(name)) {
+    this.page.change({ also: withOrWithout(this.page.state.also, name, on) });
   }
 
   #askLayers() {
     if (this.#asked || !this.facts) return;
     this.#asked = true;
-    this.send({ type: "layers" });
+    this.page.connection.send({ type: "layers" });
   }
 
   get #layer() {
-    return this.state().layers[1] || this.facts?.layers || 0;
+    return this.page.state.layers[1] || this.facts?.layers || 0;
   }
   /** Beads of the layer in front, as parts of all. */
   #beads() {
@@ -64,7 +67,7 @@ export class MotionPanel {
     const layer = this.#layer;
     if (!table?.complete) return [];
     if (this.#parts.layer !== layer || this.#parts.table !== table)
-      this.#parts = { layer, table, list: table.ofLayers(layer, layer).map((part) => part.map((texel) => table.beadOf(texel))) };
+      this.#parts = { layer, table, list: table.ofLayers(layer, layer) };
     return this.#parts.list;
   }
   get moveCount() {
@@ -80,7 +83,7 @@ export class MotionPanel {
   }
   /** The last move of the layer that is printed. */
   get move() {
-    const { beads } = this.state();
+    const { beads } = this.page.state;
     if (beads === null) return this.moveCount;
     return this.#beads().reduce((sum, [first, end]) => sum + Math.max(0, Math.min(end, beads) - first), 0);
   }
@@ -92,21 +95,16 @@ export class MotionPanel {
   /** What is printed up to a bead, with these lines of the program. */
   go(bead, lines) {
     byId("moves-group").open = true;
-    this.state().beads = bead + 1;
-    this.state().printed = 100;
     this.#bead = bead; // whose lines these are
     byId("program").replaceChildren(lines);
-    this.changed(false);
+    this.page.change({ beads: bead + 1, printed: 100 });
   }
 
   #move(move, moving) {
     const count = this.moveCount;
     if (!count) return;
     move = Math.max(1, Math.min(count, move));
-    this.state().beads = move === count ? null : this.#beadOf(move) + 1;
-    this.state().printed = 100;
-    this.hold();
-    this.changed(moving);
+    this.page.select({ beads: move === count ? null : this.#beadOf(move) + 1, printed: 100 }, moving);
   }
 
   // The newest line that is wanted; one answer at a time.
@@ -115,12 +113,12 @@ export class MotionPanel {
     if (this.#waits || bead < 0 || bead === this.#bead || !byId("moves-group").open) return;
     this.#bead = bead;
     this.#waits = true;
-    this.send({ type: "program", bead });
+    this.page.connection.send({ type: "program", bead });
   }
 
   /** The state in the panel. */
   show() {
-    const { also } = this.state();
+    const { also } = this.page.state;
     const needs = KINDS.some(([name]) => also.includes(name));
     const counts = needs ? this.own.counts() : null;
     [...byId("also").children].forEach((label, n) => {

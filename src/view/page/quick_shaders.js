@@ -11,7 +11,7 @@ ${bead(kinds)}
 ${STAGE}
 ${COLORED}
 uniform vec2 size;          // pixels
-uniform usampler2D ends;    // the last texel that a bead stands for
+uniform usampler2D ends;    // the last bead that one stands for
 uniform float least;        // mm: half of how wide they are at least
 out vec3 edge;              // colours
 flat out vec3 middle;
@@ -26,16 +26,15 @@ void main() {
   id = n + 1u;
   if (!isShown(n)) return;
   Bead b = beadAt(n);
-  float begin = 0.0, end = 1.0;
+  vec2 shares = vec2(0.0, 1.0);
 #ifdef ARCS
   int piece = gl_VertexID >> 2 & 7;
   if (b.arc.z > 0.0) {
-    begin = float(piece) / 8.0;
-    end = begin + 0.125;
+    shares = (float(piece) + shares) / 8.0;
   } else if (piece > 0) return;
 #endif
-  vec3 from = pointOf(b, begin), to = pointOf(b, end);
-  uint last = min(row(ends, n).x, texels.y - 1u);
+  vec3 from = pointOf(b, shares.x), to = pointOf(b, shares.y);
+  uint last = min(row(ends, n).x, end - 1u);
   if (last > n) {
     uvec4 w = row(beads, last);
     to.xy = vec2(w.y & 65535u, w.y >> 16u) * grain.xy - eye.xy;
