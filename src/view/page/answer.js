@@ -55,7 +55,7 @@ function drawHead(context, place, ratio) {
 export class Answer {
   points = []; // that are marked, of the print
   mm = 1; // a unit of the input's lengths
-  lines = null; // a canvas of the browser's own lines, for the finished picture, which has none
+  lines = null; // see LineRenderer.alone(), for the finished picture, which has none
   measuring = false;
   head = null; // where the nozzle is
   camera = null;
@@ -109,7 +109,11 @@ export class Answer {
     canvas.width = Math.round(canvas.clientWidth * ratio);
     canvas.height = Math.round(canvas.clientHeight * ratio);
     const context = canvas.getContext("2d");
-    if (this.lines) context.drawImage(this.lines, 0, 0, canvas.width, canvas.height);
+    if (this.lines) {
+      context.scale(1, -1);
+      context.drawImage(this.lines, 0, -canvas.height, canvas.width, canvas.height);
+      context.resetTransform();
+    }
     if (!camera) return;
     if (this.head) drawHead(context, project(camera, aspect, this.head)?.map((v, n) => v * [canvas.width, canvas.height][n]), ratio);
     if (!this.points.length) return;

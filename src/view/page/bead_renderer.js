@@ -35,16 +35,11 @@ export class BeadRenderer {
       runs: makeTable(gl, table.runs, 4),
       shown: makeTable(gl, new Uint8Array(table.runs.length / 4).fill(1), 1),
       list: makeTable(gl, new Uint32Array(ROW), 1),
-      coarse: makeTable(gl, new Uint32Array(1), 1),
-      ends: makeTable(gl, new Uint32Array(1), 1),
       colors: makeTable(gl, new Uint16Array(1), 1),
-      palette: makeTexture(gl),
       light: makeTexture(gl, gl.LINEAR),
-      ids: makeTexture(gl),
-      normals: makeTexture(gl),
-      depths: makeTexture(gl),
-      picture: makeTexture(gl),
     };
+    for (const name of ["coarse", "ends"]) this.textures[name] = makeTable(gl, new Uint32Array(1), 1);
+    for (const name of ["palette", "ids", "normals", "depths", "picture"]) this.textures[name] = makeTexture(gl);
     this.listRows = 1;
     this.units = Object.fromEntries(Object.keys(this.textures).map((name, n) => [name, n]));
     const corners = new Uint16Array(6 * DRAW);
@@ -106,14 +101,16 @@ export class BeadRenderer {
     this.size = [width, height];
     this.canvas.width = width;
     this.canvas.height = height;
-    for (const name of ["ids", "normals"]) {
+    const numbers = [gl.R32UI, gl.RED_INTEGER, gl.UNSIGNED_INT];
+    const kinds = {
+      ids: numbers, normals: numbers,
+      picture: [gl.RGBA8, gl.RGBA, gl.UNSIGNED_BYTE],
+      depths: [gl.DEPTH_COMPONENT32F, gl.DEPTH_COMPONENT, gl.FLOAT],
+    };
+    for (const [name, [kind, format, type]] of Object.entries(kinds)) {
       gl.bindTexture(gl.TEXTURE_2D, this.textures[name]);
-      gl.texImage2D(gl.TEXTURE_2D, 0, gl.R32UI, width, height, 0, gl.RED_INTEGER, gl.UNSIGNED_INT, null);
+      gl.texImage2D(gl.TEXTURE_2D, 0, kind, width, height, 0, format, type, null);
     }
-    gl.bindTexture(gl.TEXTURE_2D, this.textures.picture);
-    gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA8, width, height, 0, gl.RGBA, gl.UNSIGNED_BYTE, null);
-    gl.bindTexture(gl.TEXTURE_2D, this.textures.depths);
-    gl.texImage2D(gl.TEXTURE_2D, 0, gl.DEPTH_COMPONENT32F, width, height, 0, gl.DEPTH_COMPONENT, gl.FLOAT, null);
     for (const [target, ...names] of [[this.target, "ids", "normals"], [this.quickTarget, "picture", "ids"]]) {
       gl.bindFramebuffer(gl.FRAMEBUFFER, target);
       names.forEach((name, n) => gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0 + n, gl.TEXTURE_2D, this.textures[name], 0));
@@ -324,10 +321,8 @@ export class BeadRenderer {
     gl.drawArrays(gl.POINTS, 0, count);
     const found = new Uint32Array(rows * ROW);
     gl.readPixels(0, 0, ROW, rows, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(found.buffer));
-    for (let n = 0; n < count; ++n) {
-      const bead = coarse ? coarse.beads[first + n] : first + n;
-      if (found[n]) this.visible.expect(bead, bead + 1);
-    }
+    const beads = Array.from(found.subarray(0, count), (is, n) => is && (coarse ? coarse.beads[first + n] : first + n));
+    this.visible.expect(beads.filter((_, n) => found[n]));
   }
 
   /** Waits until the picture is there. */

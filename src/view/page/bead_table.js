@@ -42,17 +42,11 @@ export class BeadTable {
     return this.runs[4 * this.runOf(bead) + 2];
   }
 
-  /** Parts [first, end] of the beads with layers from low to high. */
+  /** The beads with layers from low to high. */
   ofLayers(low, high) {
-    const parts = [];
-    for (let n = 0; n < this.count; ++n) {
-      const layer = this.layerOf(n);
-      if (layer < low || layer > high) continue;
-      const last = parts.at(-1);
-      if (last && last[1] === n) last[1] = n + 1;
-      else parts.push([n, n + 1]);
-    }
-    return parts;
+    const beads = [];
+    for (let n = 0; n < this.count; ++n) if (this.layerOf(n) >= low && this.layerOf(n) <= high) beads.push(n);
+    return beads;
   }
 
   /** How many beads the state says are printed: a number of them, or a share. */

@@ -34,7 +34,15 @@ export class OrbitCamera {
     return orbit;
   }
 
-  /** As a part of the state. */
+  /** As the server describes one. */
+  get camera() {
+    const { eye, right, up, fov } = this;
+    return { eye, forward: times(this.outward, -1), right, up, fov };
+  }
+  /** Of a part of the state. */
+  static fromJSON({ eye, look_at, fov }) {
+    return OrbitCamera.from({ eye, forward: unit(sub(look_at, eye)), up: [0, 0, 1], fov }, look_at);
+  }
   toJSON() {
     return { eye: rounded(this.eye), look_at: rounded(this.target), fov: this.fov };
   }

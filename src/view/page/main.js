@@ -1,12 +1,12 @@
 // The page of vdbview: the picture, and what changes it.
 import { Answer, clock } from "./answer.js";
-import { OrbitCamera, handleInput, middleOf, sub, unit } from "./camera.js";
+import { OrbitCamera, handleInput, middleOf } from "./camera.js";
 import { Connection } from "./connection.js";
 import { Controls } from "./controls.js";
 import { byId, pixelRatio, setOptions } from "./elements.js";
 import { Finder } from "./finder.js";
 import { MotionPanel } from "./motion_panel.js";
-import { OwnPicture, cameraOf } from "./own_picture.js";
+import { OwnPicture } from "./own_picture.js";
 import { Legend } from "./legend.js";
 import { Saving } from "./saving.js";
 import { SecondPrint } from "./second_print.js";
@@ -16,7 +16,7 @@ const picture = byId("picture");
 const context = picture.getContext("2d");
 
 let { state, file, wrong } = fromFragment(location.hash);
-let orbit = state.camera.eye ? orbitOf(state.camera) : null;
+let orbit = state.camera.eye ? OrbitCamera.fromJSON(state.camera) : null;
 let camera = null; // of the last picture
 let aspect = 16 / 9;
 let box = null;
@@ -32,9 +32,6 @@ const log = (window.vdbviewLog = []);
 window.vdbviewAsked = () => number;
 window.vdbviewCounts = () => own.counts();
 
-function orbitOf({ eye, look_at, fov }) {
-  return OrbitCamera.from({ eye, forward: unit(sub(look_at, eye)), up: [0, 0, 1], fov }, look_at);
-}
 const url = `${location.protocol === "https:" ? "wss" : "ws"}://${location.host}${location.pathname}socket`;
 const connection = new Connection(url);
 const own = new OwnPicture(byId("beads"));
@@ -103,9 +100,8 @@ function sendAsked() {
 
 /** The beads in front of the camera, at once; a named view waits for the server, which fits it. */
 function drawOwn(moving) {
-  const from = orbit ? cameraOf(state.camera) : camera;
-  if (!from) return;
-  camera = from;
+  camera = orbit?.camera ?? camera;
+  if (!camera) return;
   aspect = shownSize[0] / shownSize[1];
   picture.classList.add("behind");
   byId("loading").hidden = true;
@@ -249,7 +245,7 @@ function openFile(wanted, view) {
 }
 function setState(view) {
   state = view;
-  orbit = view.camera.eye ? orbitOf(view.camera) : null;
+  orbit = view.camera.eye ? OrbitCamera.fromJSON(view.camera) : null;
   viewFrom = number + 1;
 }
 if (streamed) own.refuse("as the address asks");

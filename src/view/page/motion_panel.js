@@ -9,7 +9,7 @@ export class MotionPanel {
   #asked = false; // for them
   #bead = -1; // whose line was asked for last
   #waits = false; // for its answer
-  #parts = { layer: 0, list: [] }; // beads of the layer, [first, end]
+  #listed = {}; // beads of the layer
 
   /** page: see main.js. */
   constructor(page) {
@@ -31,7 +31,7 @@ export class MotionPanel {
     this.#layers = null;
     this.#asked = false;
     this.#bead = -1;
-    this.#parts = { layer: 0, list: [] };
+    this.#listed = {};
     byId("also").lastChild.hidden = !facts.print?.bed;
     this.show();
   }
@@ -61,31 +61,17 @@ export class MotionPanel {
   get #layer() {
     return this.page.state.layers[1] || this.facts?.layers || 0;
   }
-  /** Beads of the layer in front, as parts of all. */
-  #beads() {
+  /** Beads of the layer in front: its moves. */
+  get #beads() {
     const { table } = this.own;
     const layer = this.#layer;
     if (!table?.complete) return [];
-    if (this.#parts.layer !== layer || this.#parts.table !== table)
-      this.#parts = { layer, table, list: table.ofLayers(layer, layer) };
-    return this.#parts.list;
+    if (this.#listed.layer !== layer || this.#listed.table !== table) this.#listed = { layer, table, beads: table.ofLayers(layer, layer) };
+    return this.#listed.beads;
   }
-  get moveCount() {
-    return this.#beads().reduce((sum, [first, end]) => sum + end - first, 0);
-  }
-  /** The bead of a move, from 1. */
-  #beadOf(move) {
-    for (const [first, end] of this.#beads()) {
-      if (move <= end - first) return first + move - 1;
-      move -= end - first;
-    }
-    return -1;
-  }
-  /** The last move of the layer that is printed. */
+  /** The last move of the layer that is printed, from 1. */
   get move() {
-    const { beads } = this.page.state;
-    if (beads === null) return this.moveCount;
-    return this.#beads().reduce((sum, [first, end]) => sum + Math.max(0, Math.min(end, beads) - first), 0);
+    return this.#beads.filter((bead) => bead < (this.page.state.beads ?? Infinity)).length;
   }
   step(by) {
     byId("moves-group").open = true;
@@ -101,16 +87,16 @@ export class MotionPanel {
   }
 
   #move(move, moving) {
-    const count = this.moveCount;
-    if (!count) return;
-    move = Math.max(1, Math.min(count, move));
-    this.page.select({ beads: move === count ? null : this.#beadOf(move) + 1, printed: 100 }, moving);
+    const beads = this.#beads;
+    if (!beads.length) return;
+    move = Math.max(1, Math.min(beads.length, move));
+    this.page.select({ beads: move === beads.length ? null : beads[move - 1] + 1, printed: 100 }, moving);
   }
 
   // The newest line that is wanted; one answer at a time.
   #follow() {
-    const bead = this.#beadOf(Math.max(1, this.move));
-    if (this.#waits || bead < 0 || bead === this.#bead || !byId("moves-group").open) return;
+    const bead = this.#beads[Math.max(1, this.move) - 1];
+    if (this.#waits || bead === undefined || bead === this.#bead || !byId("moves-group").open) return;
     this.#bead = bead;
     this.#waits = true;
     this.page.connection.send({ type: "program", bead });
@@ -132,7 +118,7 @@ export class MotionPanel {
     const layer = this.#layer;
     const times = this.#layers?.seconds;
     byId("layer-info").textContent = times && layer ? `Layer ${layer}: z ${this.#layers.z[layer].toFixed(2)} mm, takes ${clock(times[layer])}, done after ${clock(times.slice(0, layer + 1).reduce((a, b) => a + b, 0))}` : "";
-    const count = this.moveCount;
+    const count = this.#beads.length;
     byId("moves-group").hidden = !count;
     byId("moves").max = count;
     byId("moves").value = this.move;

@@ -5,14 +5,6 @@ import { BED_TINTS, EXCLUDED_TINTS, bedLines } from "./bed.js";
 import { KINDS, MoveTable } from "./move_table.js";
 import { pixelRatio } from "./elements.js";
 import { Pace } from "./pace.js";
-import { cross, sub, unit } from "./camera.js";
-
-/** The camera of a state with an eye, as the server makes it. */
-export function cameraOf({ eye, look_at, fov }) {
-  const forward = unit(sub(look_at, eye));
-  const right = unit(cross(forward, [0, 0, 1]));
-  return { eye, forward, right, up: cross(right, forward), fov };
-}
 
 const ALL = 0xffffffff;
 const NOT_HERE = "the beads are not here yet";
@@ -275,7 +267,7 @@ export class OwnPicture extends EventTarget {
     // What is at the ends of the selection was hidden until now.
     const last = end < table.count ? table.layerOf(Math.max(0, end - 1)) : state.layers[1];
     for (const [low, high] of [[last - 2, last], [state.layers[0], state.layers[0] + 1]])
-      for (const part of high > 1 ? table.ofLayers(low, high) : []) renderer.visible.expect(...part);
+      if (high > 1) renderer.visible.expect(table.ofLayers(low, high));
   }
 
   /** The bead that is seen at a place of the picture, from 0 to 1 and from the upper left corner; -1: none. */

@@ -11,7 +11,7 @@ const COARSE = { forget: 4, doubt: 1 };
 export class VisibleBeads {
   constructor(beads) {
     this.all = beads;
-    this.seenAt = new Uint16Array(beads); // number of the look + 1; 0: not in the list
+    this.seenAt = new Uint32Array(beads); // number of the look + 1; 0: not in the list
     this.list = new Uint32Array(Math.min(beads, 4096));
     this.count = 0;
     this.changedFrom = 0; // the list's texture is right up to here
@@ -58,9 +58,9 @@ export class VisibleBeads {
     return this.coarse ? COARSE : FINE;
   }
   /** Beads that may be seen next. */
-  expect(first, end) {
+  expect(beads) {
     const { forget, doubt } = this.#looks;
-    for (let n = first; n < end; ++n) if (this.seenAt[n] === 0) this.#add(n, this.look - forget + doubt);
+    for (const n of beads) if (this.seenAt[n] === 0) this.#add(n, this.look - forget + doubt);
   }
 
   #add(bead, look) {
@@ -96,8 +96,5 @@ export class VisibleBeads {
     }
     this.count = kept;
     this.changedFrom = 0;
-    if (this.look < 65000) return;
-    for (let n = 0; n < kept; ++n) this.seenAt[this.list[n]] = FINE.forget;
-    this.look = FINE.forget + 1;
   }
 }
