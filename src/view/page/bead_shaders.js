@@ -46,9 +46,11 @@ struct Bead {
   float len, climb;         // of the path in the plan; of z over it
   float flat0, flat1;       // half the flat at the ends
   float radius, side;       // of the corners; half the height of the straight sides
+#ifdef ARCS
   vec3 arc;                 // center from the start, and radius; radius 0: straight
   vec2 from, to;            // unit, from the center to the ends
   float sweep;
+#endif
 };
 
 Bead beadAt(uint n) {
@@ -68,24 +70,35 @@ Bead beadAt(uint n) {
   b.radius = 0.5 * min(width, height);
   b.side = 0.0;
   float half_flat = 0.5 * max(width - height, 0.0);
-  if (CORNERS && side > 0.0 && width >= height) {
+#ifdef CORNERS
+  if (side > 0.0 && width >= height) {
     b.side = side;
     b.radius -= side;
     float corners = 4.0 - 3.14159265;
     half_flat = 0.5 * width - (0.125 * corners * height - 0.5 * corners * b.radius * b.radius / height + b.radius);
   }
-  if (SLOPES && half_flat > 0.0 && abs(b.climb) > b.len) {
+#endif
+#ifdef SLOPES
+  if (half_flat > 0.0 && abs(b.climb) > b.len) {
     b.radius = sqrt(height * (width - height * 0.2146018) / 3.14159265);
     half_flat = b.side = 0.0;
   }
+#endif
+  b.flat0 = b.flat1 = half_flat;
+#ifdef EXTRAS
+  float widening = 0.0;
   uvec4 extra = uvec4(0u);
-  if ((ARCS || TAPERS) && (w.w & 4096u) != 0u) extra = row(beads, total + n);
-  float widening = uintBitsToFloat(extra.w);
-  b.flat0 = max(half_flat - 0.25 * widening, 0.0);
-  b.flat1 = max(half_flat + 0.25 * widening, 0.0);
+  if ((w.w & 4096u) != 0u) {
+    extra = row(beads, total + n);
+    widening = uintBitsToFloat(extra.w);
+    b.flat0 = max(half_flat - 0.25 * widening, 0.0);
+    b.flat1 = max(half_flat + 0.25 * widening, 0.0);
+  }
+#endif
+#ifdef ARCS
   b.arc = vec3(0.0);
   b.sweep = uintBitsToFloat(extra.z);
-  if (ARCS && b.sweep != 0.0) {
+  if (b.sweep != 0.0) {
     b.arc.xy = uintBitsToFloat(extra.xy) - eye.xy - b.start.xy;
     vec2 a = -b.arc.xy, e = way.xy - b.arc.xy;
     float ra = length(a), re = length(e);
@@ -96,16 +109,19 @@ Bead beadAt(uint n) {
       b.len = b.arc.z * abs(b.sweep);
     }
   }
+#endif
   return b;
 }
 
 // A point of its path, from the eye.
 vec3 pointOf(Bead b, float share) {
   vec3 p = b.start + vec3(b.along * b.len, b.climb) * share;
-  if (ARCS && b.arc.z > 0.0) {
+#ifdef ARCS
+  if (b.arc.z > 0.0) {
     float c = cos(b.sweep * share), s = sin(b.sweep * share);
     p.xy = b.start.xy + b.arc.xy + b.arc.z * vec2(c * b.from.x - s * b.from.y, s * b.from.x + c * b.from.y);
   }
+#endif
   return p;
 }
 
@@ -116,7 +132,8 @@ void boxOf(Bead b, out vec3 low, out vec3 high) {
   float chord = b.len;
   low = vec3(-reach, -reach, -tall);
   high = vec3(reach, reach, tall);
-  if (ARCS && b.arc.z > 0.0) {
+#ifdef ARCS
+  if (b.arc.z > 0.0) {
     vec2 end = b.arc.xy + b.arc.z * b.to;
     chord = dot(end, b.along);
     vec2 center = vec2(dot(b.arc.xy, b.along), dot(b.arc.xy, vec2(-b.along.y, b.along.x)));
@@ -130,21 +147,30 @@ void boxOf(Bead b, out vec3 low, out vec3 high) {
       high.y = max(bulge, 0.0) + reach;
     }
   }
+#endif
   high.x += chord;
-  if (SLOPES && b.climb != 0.0) {
-    float steep = b.len > 0.0 ? sqrt(1.0 + b.climb * b.climb / (b.len * b.len)) : 1.0;
-    if (max(b.flat0, b.flat1) > 0.0) low.z *= 1.04 * steep, high.z *= steep;
-    low.z += min(b.climb, 0.0);
-    high.z += max(b.climb, 0.0);
+#ifdef SLOPES
+  float steep = b.len > 0.0 ? sqrt(1.0 + b.climb * b.climb / (b.len * b.len)) : 1.0;
+  if (b.climb != 0.0 && max(b.flat0, b.flat1) > 0.0) {
+    low.z = -tall * 1.04 * steep;
+    high.z = tall * steep;
   }
+  low.z += min(b.climb, 0.0);
+  high.z += max(b.climb, 0.0);
+#endif
 }
 
 // Signed distance at a point from the start, and its gradient.
 float field(Bead b, vec3 q, out vec3 gradient) {
   vec2 off;
   float half_flat = b.flat0;
-  bool arc = ARCS && b.arc.z > 0.0;
-  if (SLOPES && !arc && b.flat0 == 0.0 && b.flat1 == 0.0) {
+#ifdef ARCS
+  bool arc = b.arc.z > 0.0;
+#else
+  const bool arc = false;
+#endif
+#ifdef SLOPES
+  if (!arc && b.flat0 == 0.0 && b.flat1 == 0.0) {
     vec3 d = vec3(b.along * b.len, b.climb);
     float dd = dot(d, d);
     vec3 e = q - d * (dd > 0.0 ? clamp(dot(q, d) / dd, 0.0, 1.0) : 0.0);
@@ -152,8 +178,10 @@ float field(Bead b, vec3 q, out vec3 gradient) {
     gradient = e / max(l, 1e-9);
     return l - b.radius;
   }
+#endif
   float share = 0.0;
   bool inner = false;
+#ifdef ARCS
   if (arc) {
     vec2 v = q.xy - b.arc.xy;
     float turn = sign(b.sweep);
@@ -163,22 +191,26 @@ float field(Bead b, vec3 q, out vec3 gradient) {
     float l = length(v);
     if (within) {
       off = v * (1.0 - b.arc.z / max(l, 1e-9));
-      float angle = SLOPES ? turn * atan(b.from.x * v.y - b.from.y * v.x, dot(b.from, v)) : 0.0;
+#ifdef SLOPES
+      float angle = turn * atan(b.from.x * v.y - b.from.y * v.x, dot(b.from, v));
       share = clamp((angle < 0.0 ? angle + 6.2831853 : angle) / full, 0.0, 1.0);
+#endif
     } else {
       vec2 a = v - b.arc.z * b.from, e = v - b.arc.z * b.to;
       bool first = dot(a, a) <= dot(e, e);
       off = first ? a : e;
       share = first ? 0.0 : 1.0;
     }
-  } else {
+  } else
+#endif
+  {
     float along = dot(q.xy, b.along);
-    if (TAPERS && b.len > 0.0) {
-      float across = abs(q.y * b.along.x - q.x * b.along.y);
-      float k = (b.flat1 - b.flat0) / b.len;
-      along += across * k / sqrt(max(1.0 - k * k, 1e-6));
-      half_flat = b.flat0 + k * clamp(along, 0.0, b.len);
-    }
+#ifdef TAPERS
+    float across = abs(q.y * b.along.x - q.x * b.along.y);
+    float k = b.len > 0.0 ? (b.flat1 - b.flat0) / b.len : 0.0;
+    along += across * k / sqrt(max(1.0 - k * k, 1e-6));
+    half_flat = b.flat0 + k * clamp(along, 0.0, b.len);
+#endif
     float s = clamp(along, 0.0, b.len);
     inner = s == along;
     off = q.xy - s * b.along;
@@ -187,23 +219,35 @@ float field(Bead b, vec3 q, out vec3 gradient) {
   float rho = length(off);
   float z = q.z;
   float cosine = 1.0;
-  if (SLOPES && b.climb != 0.0) {
+#ifdef SLOPES
+  if (b.climb != 0.0) {
     cosine = b.len / sqrt(b.len * b.len + b.climb * b.climb);
     z = (q.z - b.climb * share) * cosine;
     if (z < 0.0) z = min(z + 0.04 * (b.radius + b.side), 0.0);
   }
+#endif
   float d = rho - half_flat;
   vec2 plan = off / max(rho, 1e-9);
+  float distance;
+#ifdef CORNERS
   float over = abs(z) - b.side;
   float x = max(d, 0.0), y = max(over, 0.0);
   float l = sqrt(x * x + y * y);
-  float distance = l + min(max(d, over), 0.0) - b.radius;
+  distance = l + min(max(d, over), 0.0) - b.radius;
   if (l > 0.0) gradient = vec3(plan * x, sign(z) * y) / l;
   else gradient = d > over ? vec3(plan, 0.0) : vec3(0.0, 0.0, sign(z));
-  if (SLOPES && b.climb != 0.0) {
+#else
+  float x = max(d, 0.0);
+  float l = sqrt(x * x + z * z);
+  distance = l - b.radius;
+  gradient = vec3(plan * x, z) / max(l, 1e-9);
+#endif
+#ifdef SLOPES
+  if (b.climb != 0.0) {
     if (inner) gradient.xy -= b.along * (gradient.z * cosine * b.climb / b.len);
     gradient.z *= cosine;
   }
+#endif
   return distance;
 }
 
@@ -239,13 +283,16 @@ bool meets(Bead b, vec3 ray, out float depth, out vec3 normal) {
     normal = cut.xyz;
     return true;
   }
-  if (ARCS && b.arc.z > 0.0) {
+#ifdef ARCS
+  if (b.arc.z > 0.0) {
     for (int n = 0; n < 64 && f > close; ++n) {
       t += max(f, close) / speed;
       if (begin + t > end) return false;
       f = field(b, q + ray * t, normal);
     }
-  } else for (int n = 0; n < 12 && f > close; ++n) {
+  } else
+#endif
+  for (int n = 0; n < 12 && f > close; ++n) {
     float fall = dot(normal, ray);
     if (fall > -1e-5 * speed) return false;
     t -= f / fall;
@@ -270,7 +317,7 @@ bool isShown(uint n) { return n < end && row(shown, row(beads, n).w >> 13u).x !=
 
 /** Both, of a table that has these kinds of beads. */
 export const bead = (kinds) =>
-  ["arcs", "tapers", "slopes", "corners"].map((kind) => `const bool ${kind.toUpperCase()} = ${kinds[kind]};\n`).join("") + BEAD + CHOICE;
+  ["arcs", "tapers", "slopes", "corners", "extras"].filter((kind) => kinds[kind]).map((kind) => `#define ${kind.toUpperCase()}\n`).join("") + BEAD + CHOICE;
 
 /** Beads of the table, or of a list: each a rectangle on the picture about its box, as near as its nearest corner. */
 export const beadVertices = (kinds) => `${HEAD}
@@ -288,7 +335,7 @@ void main() {
   // The box as a line along the bead, and what it reaches to the sides of that.
   vec3 u = vec3(body.along, 0.0), v = vec3(-body.along.y, body.along.x, 0.0);
   vec3 middle = 0.5 * (low + high), half_size = 0.5 * (high - low);
-  mat3 eyes = mat3(right.x, up.x, forward.x, right.y, up.y, forward.y, right.z, up.z, forward.z);
+  mat3 eyes = transpose(mat3(right, up, forward));
   vec3 center = eyes * (body.start + u * middle.x + v * middle.y + vec3(0.0, 0.0, middle.z));
   vec3 x = eyes * (u * half_size.x), y = eyes * (v * half_size.y), z = eyes * vec3(0.0, 0.0, half_size.z);
   float deep = abs(y.z) + abs(z.z);

@@ -166,8 +166,8 @@ export class Controls {
     // A new cut faces the camera.
     const face = () => {
       const axis = Number(byId("cut-axis").value);
-      const { eye } = this.page;
-      if (eye && this.#box) byId("cut-flip").checked = eye[axis] < (this.#box[axis] + this.#box[axis + 3]) / 2;
+      const { camera } = this.page;
+      if (camera && this.#box) byId("cut-flip").checked = camera.eye[axis] < (this.#box[axis] + this.#box[axis + 3]) / 2;
       take();
     };
     return { cut: face, "cut-axis": face, "cut-flip": take, "cut-at": take };

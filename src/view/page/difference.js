@@ -6,12 +6,7 @@ const CELL = [0.5, 0.5, 0.05]; // mm, of the map that finds a bead by its middle
 /** Six coordinates of the ends, and the width, of each bead of a table. */
 function endsOf(table) {
   const ends = new Float64Array(7 * table.count);
-  for (let n = 0; n < table.count; ++n) {
-    const [from, to] = table.ends(n);
-    ends.set(from, 7 * n);
-    ends.set(to, 7 * n + 3);
-    ends[7 * n + 6] = table.width(n);
-  }
+  for (let n = 0; n < table.count; ++n) ends.set([...table.ends(n).flat(), table.width(n)], 7 * n);
   return ends;
 }
 

@@ -53,8 +53,7 @@ export class Legend {
     });
     const all = element("button", { type: "button", title: "From the least value to the most", hidden: !this.page.state.color_range }, "All");
     all.addEventListener("click", () => this.page.change({ color_range: null }));
-    const ends = element("form", { className: "ends" }, inputs[0], all, inputs[1]);
-    ends.addEventListener("submit", (event) => event.preventDefault());
+    const ends = element("div", { className: "ends" }, inputs[0], all, inputs[1]);
     const by = element("select", { className: "by", ariaLabel: "Histogram" });
     setOptions(by, [["by length", ""], ["by time", "1"]]);
     by.value = this.#by_time ? "1" : "";

@@ -46,9 +46,12 @@ const page = {
   get state() {
     return state;
   },
-  /** Where the camera stands, or undefined. */
-  get eye() {
-    return camera?.eye;
+  /** Of the last picture; null: there is none. */
+  get camera() {
+    return camera;
+  },
+  get aspect() {
+    return aspect;
   },
   /** Other values of the state. */
   change(values, moving = false) {
@@ -68,7 +71,7 @@ const motion = (page.motion = new MotionPanel(page));
 const second = new SecondPrint(page);
 const finder = new Finder(page);
 new Saving(page);
-const answer = new Answer(byId("answer"), byId("marks"));
+const answer = new Answer(page);
 
 // ---------------------------------------------------------------- asking
 
@@ -109,7 +112,7 @@ function drawOwn(moving) {
   answer.head = own.head(state);
   own.draw(camera, state, shownSize, moving);
   second.draw(camera, state, shownSize, moving);
-  answer.draw(camera, aspect);
+  answer.draw();
   const [width, height] = own.size;
   record({ kind: "own", number, at: performance.now(), width, height, bytes: 0 });
   if (moving) say(`${width} × ${height}`);
@@ -117,7 +120,7 @@ function drawOwn(moving) {
 
 own.addEventListener("complete", () => {
   answer.lines = own.lines();
-  answer.draw(camera, aspect);
+  answer.draw();
 });
 own.addEventListener("moves", () => ask(false));
 own.addEventListener("changed", () => {
@@ -173,7 +176,7 @@ connection.on("picture", async (detail) => {
   aspect = detail.width / detail.height;
   latest = detail.number;
   document.body.classList.remove("stale");
-  answer.draw(camera, aspect);
+  answer.draw();
   tellCommand(detail);
   byId("loading").hidden = true;
   if (byId("trouble").dataset.of === "view") byId("trouble").hidden = true;
@@ -237,6 +240,7 @@ function openFile(wanted, view) {
   nameFile(wanted);
   setState(view);
   latest = 0;
+  camera = null;
   answer.reset();
   print = null;
   connection.send({ type: "open", file });
@@ -313,7 +317,7 @@ on("inspected", (detail) => {
   window.vdbviewFound = detail;
   if (turns) turnAbout(detail);
   answer.show(detail);
-  answer.draw(camera, aspect);
+  answer.draw();
 });
 
 // ---------------------------------------------------------------- controls
@@ -400,7 +404,7 @@ window.addEventListener("hashchange", () => {
 
 let resizeTimer = 0;
 new ResizeObserver(() => {
-  answer.draw(camera, aspect);
+  answer.draw();
   clearTimeout(resizeTimer);
   resizeTimer = setTimeout(() => {
     if (String(pixels()) !== String(shownSize)) ask(false);

@@ -76,10 +76,8 @@ export class OwnPicture extends EventTarget {
     this.#connection.send({ type: "beads" });
   }
   #begin(head) {
-    this.#stop("the beads are on their way");
+    this.refuse("the beads are on their way");
     this.table = new BeadTable(head, head.file);
-    this.moves = null;
-    this.#movesAsked = false;
     this.#look = this.#colors = this.#over = null;
   }
   #add({ generation, file }) {

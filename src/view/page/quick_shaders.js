@@ -27,9 +27,12 @@ void main() {
   if (!isShown(n)) return;
   Bead b = beadAt(n);
   vec2 shares = vec2(0.0, 1.0);
-  int piece = ARCS ? gl_VertexID >> 2 & 7 : 0;
-  if (ARCS && b.arc.z > 0.0) shares = (float(piece) + shares) / 8.0;
-  else if (piece > 0) return;
+#ifdef ARCS
+  int piece = gl_VertexID >> 2 & 7;
+  if (b.arc.z > 0.0) {
+    shares = (float(piece) + shares) / 8.0;
+  } else if (piece > 0) return;
+#endif
   vec3 from = pointOf(b, shares.x), to = pointOf(b, shares.y);
   uint last = min(row(ends, n).x, end - 1u);
   if (last > n) {
