@@ -197,6 +197,41 @@ def comes_into_sight():
             check(found["drawn"] < 0.6 * found["beads"], f"and not all of them: {found}")
 
 
+def quick_colors():
+    """Quick pictures are as bright and as coloured as pictures at rest: decks, walls, sections, a part of the print."""
+    for view, most in (({"printed": 47}, 14), ({"color_by": "speed"}, 18), ({"clip": [0, -1, 0, -98]}, 15), ({"layers": [40, 40]}, 11)):
+        with viewer.drawn(gcode("hull.gcode"), view):
+            until("window.vdbviewLog.some((e) => e.kind === 'final')", "the first finished picture")
+            found = page.execute_async_script("""
+                const done = arguments[0], side = [120, 80];
+                const small = (canvas) => {
+                  const context = new OffscreenCanvas(...side).getContext("2d");
+                  context.imageSmoothingQuality = "high";
+                  context.drawImage(canvas, 0, 0, ...side);
+                  return context.getImageData(0, 0, ...side).data;
+                };
+                import(location.pathname + "bead_renderer.js").then(async ({ BeadRenderer }) => {
+                  const light = BeadRenderer.prototype.light;
+                  let last;
+                  BeadRenderer.prototype.light = function (...view) { light.apply(this, view); last = [this, view, small(this.canvas)]; };
+                  await window.vdbviewDrawn();
+                  const [renderer, view, still] = last;
+                  // Coarse beads that are seen are found by a look at the picture.
+                  for (let n = 0; n < 12; ++n) { renderer.drawQuick(...view); renderer.note(); renderer.lookFor(...view, 32); }
+                  renderer.drawQuick(...view);
+                  const quick = small(renderer.canvas);
+                  let [count, sum] = [0, 0];
+                  for (let n = 0; n < still.length; n += 4) {
+                    if (Math.max(...[0, 1, 2].map((k) => Math.abs(still[n + k] - still[n + (k + 1) % 3]))) < 40) continue; // the ground is grey
+                    ++count;
+                    sum += Math.max(...[0, 1, 2].map((k) => Math.abs(still[n + k] - quick[n + k])));
+                  }
+                  done({ count, off: sum / count });
+                });""")
+            print(f"a quick picture of {view}: {found}")
+            check(found["count"] > 500 and found["off"] < most, f"colours of a quick picture: {found}")
+
+
 def picks():
     """The page's own answers are those of the server."""
     same = 0
@@ -245,6 +280,7 @@ def streams():
 try:
     carries_nothing()
     comes_into_sight()
+    quick_colors()
     agrees("tile.gcode", {"eye": [110, 60, 40], "look_at": [100, 98, 1], "fov": 2.5})
     agrees("tile_arcs.gcode", {"eye": [110, 60, 40], "look_at": [100, 98, 1], "fov": 2.5})
     agrees("vase.gcode", {"eye": [150, 60, 40], "look_at": [100, 90, 10], "fov": 3})

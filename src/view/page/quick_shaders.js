@@ -3,6 +3,8 @@
 import { HEAD, NEAR, bead } from "./bead_shaders.js";
 import { COLORED, STAGE } from "./light_shaders.js";
 
+/** Whose beads lie side by side. */
+export const LEVEL = ["solid-infill", "top-infill", "bridge", "ironing", "brim", "support-interface"];
 /** Ribbons of a bead: parts of its arc. */
 export const piecesOf = (kinds) => (kinds.arcs ? 8 : 1);
 
@@ -13,6 +15,7 @@ ${COLORED}
 uniform vec2 size;          // pixels
 uniform usampler2D ends;    // the last bead that one stands for
 uniform float least;        // mm: half of how wide they are at least
+uniform uint level_features; // a bit each, of those that lie side by side
 out vec3 edge;              // colours
 flat out vec3 middle;
 out float across;           // -1 to 1
@@ -63,16 +66,17 @@ void main() {
   p += along * at.x * 0.8 * reach(b, half_flat, along) + side_way * at.y * drawn - view * reach(b, half_flat, view);
   float depth = dot(p, forward);
   gl_Position = vec4(dot(p, right) / slope.x, dot(p, up) / slope.y, 2.0 * ${NEAR} - depth, depth);
-  // Of its round sides one sees most above other layers, of its flats what is level.
+  // Of what lies side by side one sees the flats, of what lies on others the round sides, too.
   vec3 facing = cross(side_way, along_path);
   facing *= sign(-dot(facing, view) + 1e-9);
-  facing = normalize(vec3(b.radius * facing.xy, (0.3 * b.radius + half_flat) * facing.z));
+  bool is_level = (level_features >> (row(runs, row(beads, n).w >> 13u).w & 31u) & 1u) != 0u;
+  facing = normalize(vec3(b.radius * facing.xy, (is_level ? 6.0 : 0.5) * (0.3 * b.radius + half_flat) * facing.z));
   across = at.y;
   level = half_flat * length(side_way.xy) / wide;
-  vec3 body = bodyOf(n); // which the surroundings darken by about 0.85
-  middle = shadeOf(body, facing, view, 0.85 * openness(facing));
+  vec3 body = bodyOf(n); // which the surroundings darken by about 0.92
+  middle = shadeOf(body, facing, view, 0.92 * openness(facing));
   vec3 beside = normalize(at.y * side_way + 0.5 * facing);
-  edge = mix(middle, shadeOf(body, beside, view, 0.85 * openness(beside)), wide / drawn); // no grain of what is smaller than that
+  edge = mix(middle, shadeOf(body, beside, view, 0.92 * openness(beside)), wide / drawn); // no grain of what is smaller than that
 }`;
 export const quickFragments = `${HEAD}
 in vec3 edge;
