@@ -9,6 +9,7 @@ import { LineRenderer } from "./line_renderer.js";
 import { ROW, fillTable, makeFramebuffer, makeIndices, makeProgram, makeTable, makeTexture, release, setUniforms } from "./webgl.js";
 import { dot, project, sub } from "./camera.js";
 
+const SETS = 3; // of coarse beads that are kept: each takes half of what the table takes
 const DRAW = 16384; // beads a call: their corners are counted in 16 bits
 
 export class BeadRenderer {
@@ -215,7 +216,11 @@ export class BeadRenderer {
     const tolerance = 2 ** Math.floor(Math.log2(pixel));
     const stride = 2 ** Math.floor(Math.log2(Math.max(1, Math.min(few, (1.5 * tolerance) / layerHeight))));
     const key = `${stride} ${tolerance}`;
-    if (!this.coarse.has(key)) this.coarse.set(key, new CoarseBeads(this.table, stride, tolerance));
+    if (!this.coarse.has(key)) {
+      const [oldest] = this.coarse.keys();
+      if (this.coarse.size >= SETS) this.coarse.delete(oldest);
+      this.coarse.set(key, new CoarseBeads(this.table, stride, tolerance));
+    }
     const coarse = Object.assign(this.coarse.get(key), { few });
     if (coarse === old) return old;
     fillTable(this.gl, this.textures.coarse, coarse.beads, 1);
@@ -246,8 +251,6 @@ export class BeadRenderer {
       this.listRows = 2 * rows;
       fillTable(gl, this.textures.list, new Uint32Array(this.listRows * ROW), 1);
       visible.changedFrom = 0;
-      gl.activeTexture(gl.TEXTURE0 + this.units.list);
-      gl.bindTexture(gl.TEXTURE_2D, this.textures.list);
     }
     gl.activeTexture(gl.TEXTURE0 + this.units.list);
     gl.bindTexture(gl.TEXTURE_2D, this.textures.list);

@@ -16,7 +16,8 @@ const picture = byId("picture");
 const context = picture.getContext("2d");
 
 let { state, file, wrong } = fromFragment(location.hash);
-let orbit = state.camera.eye ? OrbitCamera.fromJSON(state.camera) : null;
+const orbitOf = ({ camera: its }) => (its.eye ? OrbitCamera.fromJSON(its) : null); // null: a named view
+let orbit = orbitOf(state);
 let camera = null; // of the last picture
 let aspect = 16 / 9;
 let box = null;
@@ -132,9 +133,7 @@ own.addEventListener("changed", () => {
 });
 
 function setView(view) {
-  orbit = null;
-  viewFrom = number + 1;
-  state.camera = { view, fov: state.camera.fov };
+  setState({ ...state, camera: { view, fov: state.camera.fov } });
   ask(false);
 }
 
@@ -249,7 +248,7 @@ function openFile(wanted, view) {
 }
 function setState(view) {
   state = view;
-  orbit = view.camera.eye ? OrbitCamera.fromJSON(view.camera) : null;
+  orbit = orbitOf(view);
   viewFrom = number + 1;
 }
 if (streamed) own.refuse("as the address asks");
@@ -259,10 +258,7 @@ on("no-moves", (detail) => {
   motion.show();
   trouble(detail.text, "view");
 });
-on("layers", (detail) => {
-  motion.setLayers(detail);
-  tellFacts();
-});
+on("layers", tellFacts);
 on("look", (detail) => {
   tellCommand(detail);
   if (detail.number !== number) return own.illuminate(detail);

@@ -21,6 +21,10 @@ export class MotionPanel {
     byId("layers-group").addEventListener("input", () => this.#askLayers());
     byId("moves-group").addEventListener("toggle", () => this.show());
     follow(byId("moves"), (move, moving) => this.#move(move, moving));
+    page.connection.on("layers", (layers) => {
+      this.#layers = layers;
+      this.show();
+    });
     page.connection.on("program", (program) => this.#setProgram(program));
     page.connection.on("refused", () => this.#setProgram(null)); // that may be what was asked for
   }
@@ -37,10 +41,6 @@ export class MotionPanel {
   }
   get planned() {
     return this.#layers?.seconds.reduce((sum, each) => sum + each, 0);
-  }
-  setLayers(layers) {
-    this.#layers = layers;
-    this.show();
   }
   #setProgram(program) {
     this.#waits = false;
