@@ -3,7 +3,7 @@
 import { SOUGHT, beadFragments, beadVertices, seekFragments, seekVertices } from "./bead_shaders.js";
 import { GRID, backFragments, backVertices, gridFragments, lightFragments, screenVertices } from "./light_shaders.js";
 import { CoarseBeads } from "./coarse_beads.js";
-import { LEVEL, piecesOf, quickFragments, quickVertices } from "./quick_shaders.js";
+import { piecesOf, quickFragments, quickVertices } from "./quick_shaders.js";
 import { VisibleBeads } from "./visible_beads.js";
 import { LineRenderer } from "./line_renderer.js";
 import { ROW, fillTable, makeFramebuffer, makeIndices, makeProgram, makeTable, makeTexture, release, setUniforms } from "./webgl.js";
@@ -41,7 +41,6 @@ export class BeadRenderer {
     };
     for (const name of ["coarse", "ends"]) this.textures[name] = makeTable(gl, new Uint32Array(1), 1);
     for (const name of ["palette", "ids", "normals", "depths", "picture"]) this.textures[name] = makeTexture(gl);
-    this.level = LEVEL.reduce((bits, name) => bits | (1 << table.features.indexOf(name)), 0) >>> 0;
     this.listRows = 1;
     this.units = Object.fromEntries(Object.keys(this.textures).map((name, n) => [name, n]));
     const corners = new Uint16Array(6 * DRAW);
@@ -185,7 +184,7 @@ export class BeadRenderer {
     const { kinds } = this.table;
     this.quick ??= makeProgram(gl, quickVertices(kinds), quickFragments);
     const coarse = this.#coarseFor(camera, state);
-    const values = { ...this.#stage(camera, state), least: 0.6 * coarse.stride * this.table.layerHeight, level_features: this.level };
+    const values = { ...this.#stage(camera, state), least: 0.6 * coarse.stride * this.table.layerHeight };
     this.#use(this.quick, this.quickTarget, values);
     gl.clearBufferfv(gl.COLOR, 0, [0, 0, 0, 1]);
     gl.clearBufferuiv(gl.COLOR, 1, [0, 0, 0, 0]);

@@ -313,7 +313,8 @@ uniform bool from_list;
 uniform uint first;         // of the draw
 uniform uint end;           // beads that are printed
 uint chosen(uint n) { return from_list ? row(list, first + n).x : first + n; }
-bool isShown(uint n) { return n < end && row(shown, row(beads, n).w >> 13u).x != 0u; }`;
+uint shownAs(uint n) { return n < end ? row(shown, row(beads, n).w >> 13u).x : 0u; } // see BeadTable.shown()
+bool isShown(uint n) { return shownAs(n) != 0u; }`;
 
 /** Both, of a table that has these kinds of beads. */
 export const bead = (kinds) =>

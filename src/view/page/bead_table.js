@@ -3,6 +3,8 @@ import { sub } from "./camera.js";
 
 const asFloat = (word) => new Float32Array(Uint32Array.of(word).buffer)[0];
 
+const LEVEL = ["solid-infill", "top-infill", "bridge", "ironing", "brim", "support-interface"];
+
 export class BeadTable {
   /** `head` is the first message of the server: see bead_table.h; `runs` are its bytes. */
   constructor(head, runs) {
@@ -105,7 +107,7 @@ export class BeadTable {
     };
   }
 
-  /** By run: 1 where the state shows it. */
+  /** By run: 0 where the state does not show it, 2 where its beads lie side by side, else 1. */
   shown(state) {
     const count = this.runs.length / 4;
     const shown = new Uint8Array(count);
@@ -119,7 +121,7 @@ export class BeadTable {
       if (layer < low || layer > high || hidden.has(tags & 255)) continue;
       if (objects.size && !objects.has(tags >>> 16)) continue;
       if (tools.size && !tools.has((tags >>> 8) & 255)) continue;
-      shown[n] = 1;
+      shown[n] = LEVEL.includes(this.features[tags & 255]) ? 2 : 1;
     }
     return shown;
   }

@@ -3,8 +3,6 @@
 import { HEAD, NEAR, bead } from "./bead_shaders.js";
 import { COLORED, STAGE } from "./light_shaders.js";
 
-/** Whose beads lie side by side. */
-export const LEVEL = ["solid-infill", "top-infill", "bridge", "ironing", "brim", "support-interface"];
 /** Ribbons of a bead: parts of its arc. */
 export const piecesOf = (kinds) => (kinds.arcs ? 8 : 1);
 
@@ -15,7 +13,6 @@ ${COLORED}
 uniform vec2 size;          // pixels
 uniform usampler2D ends;    // the last bead that one stands for
 uniform float least;        // mm: half of how wide they are at least
-uniform uint level_features; // a bit each, of those that lie side by side
 out vec3 edge;              // colours
 flat out vec3 middle;
 out float across;           // -1 to 1
@@ -27,7 +24,8 @@ void main() {
   gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
   uint n = chosen(uint(gl_VertexID) / ${4 * piecesOf(kinds)}u);
   id = n + 1u;
-  if (!isShown(n)) return;
+  uint shown_as = shownAs(n);
+  if (shown_as == 0u) return;
   Bead b = beadAt(n);
   vec2 shares = vec2(0.0, 1.0);
 #ifdef ARCS
@@ -69,8 +67,7 @@ void main() {
   // Of what lies side by side one sees the flats, of what lies on others the round sides, too.
   vec3 facing = cross(side_way, along_path);
   facing *= sign(-dot(facing, view) + 1e-9);
-  bool is_level = (level_features >> (row(runs, row(beads, n).w >> 13u).w & 31u) & 1u) != 0u;
-  facing = normalize(vec3(b.radius * facing.xy, (is_level ? 6.0 : 0.5) * (0.3 * b.radius + half_flat) * facing.z));
+  facing = normalize(vec3(b.radius * facing.xy, (shown_as == 2u ? 6.0 : 0.5) * (0.3 * b.radius + half_flat) * facing.z));
   across = at.y;
   level = half_flat * length(side_way.xy) / wide;
   vec3 body = bodyOf(n); // which the surroundings darken by about 0.92
