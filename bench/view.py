@@ -1,12 +1,13 @@
 #!/usr/bin/env python3
 """Measures vdbview with a real headless Chromium, through the page's own clock.
 
-    /usr/bin/python3 bench/view.py BIN FILE... [--seconds 5] [--soak SECONDS]
+    /usr/bin/python3 bench/view.py BIN FILE... [--seconds 5] [--turning ROUNDS | --memory | --soak SECONDS]
 
 For each file: seconds from the start of the process until the page has shown the first picture; frames a second, latency
 from input to frame and size while the view is turned; latency of the layer slider; seconds until the rough and the
 finished picture; memory of the server beside that of vdbtrace; its processor time at rest. --turning compares, in turns,
-frames that the page draws itself with those that the server streams. --soak turns, slides and
+frames that the page draws itself with those that the server streams. --memory states what the page takes in Chromium's own
+processes beside an empty one. --soak turns, slides and
 colours by eight clients without a browser, and prints memory and pictures by the minute. Chromium runs on the same
 processors as the server.
 """
@@ -148,6 +149,54 @@ def turning(folder, path, seconds, page, rounds):
           f"{own_pixels / stream_pixels:.1f} x the pixels", flush=True)
 
 
+def shares(page):
+    """MB of Chromium's renderers and of its GPU's process, in which SwiftShader is, by process: what they have for
+    themselves, and their share of what they have in common with others (PSS)."""
+    parents, found = {}, {"renderer": {}, "gpu-process": {}}
+    for name in filter(str.isdigit, os.listdir("/proc")):
+        try:
+            with open(f"/proc/{name}/stat", encoding="utf-8") as file:
+                parents[int(name)] = int(file.read().rsplit(")", 1)[1].split()[1])
+        except OSError:
+            pass  # it has just ended
+    inside = {page.service.process.pid}
+    while more := {child for child, parent in parents.items() if parent in inside} - inside:
+        inside |= more
+    for process in inside:
+        try:
+            with open(f"/proc/{process}/cmdline", encoding="utf-8") as file:
+                kind = re.search(r"--type=(renderer|gpu-process)", file.read())
+            with open(f"/proc/{process}/smaps_rollup", encoding="utf-8") as file:
+                size = int(re.search(r"Pss:\s+(\d+)", file.read()).group(1)) / 1024
+        except OSError:
+            continue
+        if kind:
+            found[kind.group(1)][process] = size
+    return found
+
+
+def memory_of_page(folder, path, seconds, page):
+    page.get("about:blank")
+    time.sleep(2)
+    empty = shares(page)
+    process, url = start(folder, path)
+    page.get(url)
+    until(page, "final")
+    first = shares(page)
+    page.execute_script("const s = document.getElementById('color-by'); s.value = 'speed'; s.dispatchEvent(new Event('change'))")
+    page.execute_async_script(ORBIT, seconds)
+    until(page, "final")
+    last = shares(page)
+    process.terminate()
+    process.wait()
+    # Other renderers are of the browser itself.
+    own = {kind: max(sizes, key=sizes.get) for kind, sizes in last.items()}
+    columns = [[sizes[kind].get(own[kind], 0) for kind in own] for sizes in (empty, first, last)]
+    words = ", ".join(f"{title}: renderer {renderer:.0f}, GPU {gpu:.0f} MB" for title, (renderer, gpu) in
+                      zip(("an empty page", "the finished picture", "coloured by speed and turned"), columns))
+    print(f"{os.path.basename(path)}: {words}; {sum(columns[2]) - sum(columns[0]):.0f} MB more than an empty page", flush=True)
+
+
 def tell(seconds, process, clients):
     print(f"  {seconds:.0f} s: {resident(process):.0f} MB, pictures of each client {[client.pictures for client in clients]}", flush=True)
 
@@ -158,6 +207,7 @@ def main():
     parser.add_argument("files", nargs="+")
     parser.add_argument("--seconds", type=float, default=5)
     parser.add_argument("--turning", type=int, default=0, metavar="ROUNDS")
+    parser.add_argument("--memory", action="store_true")
     parser.add_argument("--soak", type=float, default=0)
     options = parser.parse_args()
     if options.soak > 0:
@@ -170,7 +220,9 @@ def main():
         page = window(profile)
         try:
             for path in options.files:
-                if options.turning > 0:
+                if options.memory:
+                    memory_of_page(options.bin, path, options.seconds, page)
+                elif options.turning > 0:
                     turning(options.bin, path, options.seconds, page, options.turning)
                 else:
                     measure(options.bin, path, options.seconds, page)

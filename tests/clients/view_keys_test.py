@@ -168,17 +168,17 @@ def failed_saving():
 
 def focus():
     """A list that is made anew keeps the focus where it was."""
-    focused = "document.activeElement.dataset.name ?? document.activeElement.value"
+    focused = "document.activeElement.value"
     box = """document.querySelector('#features input[value="infill"]')"""
-    item = """[...document.querySelectorAll('#legend li')].find((each) => each.textContent.startsWith('infill'))"""
+    item = """document.querySelector('#legend input[value="infill"]')"""
     path = os.path.join(FOLDER, "copy.gcode")
     shutil.copy(gcode("tile.gcode"), path)
     with drawn(path, {"color_by": "feature"}):
         until(item, "the legend")
-        for checked in ("false", "true"):
+        for checked in (False, True):
             js(f"{item}.focus()")
             page.switch_to.active_element.send_keys(" ")
-            until(f"{item}.getAttribute('aria-checked') === '{checked}' && window.vdbviewLog.at(-1).kind === 'final'", f"infill: {checked}")
+            until(f"{item}.checked === {str(checked).lower()} && window.vdbviewLog.at(-1).kind === 'final'", f"infill: {checked}")
             check(js(f"return {focused}") == "infill", "the legend's entry has the focus still")
         js(f"{box}.focus(); {box}.dataset.old = '1'")
         with open(path, "a", encoding="utf-8") as file:

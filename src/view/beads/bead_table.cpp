@@ -95,7 +95,7 @@ Json BeadTable::head() const {
     if (part.empty()) part = all;
     const std::vector<double> shares = voxelize::equalShares(kMoments);
     return {{"type", "beads"},
-            {"texels", texels_},
+            {"beads", beads()},
             {"runs", toolpath_->runs.size()},
             {"low", low_},
             {"grain", grain_},
@@ -129,8 +129,7 @@ std::vector<std::uint32_t> BeadTable::part(std::size_t& bead, std::size_t count)
         words.push_back(bitsOf(arc.center_x - low_[0]));
         words.push_back(bitsOf(arc.center_y - low_[1]));
         words.push_back(bitsOf(arc.sweep));
-        // The bit that says that a texel follows stays empty.
-        words.push_back(bitsOf(b.arc >= 0 || b.z0 != b.z1 ? 0.0 : gcode::widening(print, b)) & ~kExtra);
+        words.push_back(bitsOf(b.arc >= 0 || b.z0 != b.z1 ? 0.0 : gcode::widening(print, b)));
     }
     return words;
 }

@@ -1,5 +1,5 @@
 // What a click has found: the bead, its line of G-code, and the distance of two clicks. Marks follow the picture.
-import { element, pixelRatio } from "./elements.js";
+import { byId, element, pixelRatio } from "./elements.js";
 import { project, sub, size, times } from "./camera.js";
 
 const fixed = (value, digits = 2) => value.toFixed(digits);
@@ -55,25 +55,24 @@ function drawHead(context, place, ratio) {
 export class Answer {
   points = []; // that are marked, of the print
   mm = 1; // a unit of the input's lengths
-  lines = null; // a canvas of the browser's own lines, for the finished picture, which has none
+  lines = null; // see LineRenderer.alone(), for the finished picture, which has none
   measuring = false;
   head = null; // where the nozzle is
-  camera = null;
-  aspect = 1;
+  #place = byId("answer");
 
-  constructor(place, marks) {
-    this.place = place;
-    this.marks = marks;
+  /** page: see main.js. */
+  constructor(page) {
+    this.page = page;
   }
 
   clear() {
     this.points = [];
-    this.place.hidden = true;
+    this.#place.hidden = true;
     this.draw();
   }
   /** Another input. */
   reset() {
-    this.lines = this.head = this.camera = null;
+    this.lines = this.head = null;
     this.clear();
   }
 
@@ -88,9 +87,9 @@ export class Answer {
     const close = element("button", { textContent: "Close" });
     close.addEventListener("click", () => this.clear());
     const rows = this.#rows(found).flatMap(([name, value]) => [element("dt", { textContent: name }), element("dd", { textContent: value })]);
-    this.place.replaceChildren(element("header", {}, element("h2", { textContent: title }), close), element("dl", {}, ...rows));
-    if (found.lines && !this.measuring) this.place.append(linesOf(found.lines, found.bead.line));
-    this.place.hidden = false;
+    this.#place.replaceChildren(element("header", {}, element("h2", { textContent: title }), close), element("dl", {}, ...rows));
+    if (found.lines && !this.measuring) this.#place.append(linesOf(found.lines, found.bead.line));
+    this.#place.hidden = false;
   }
 
   #rows(found) {
@@ -101,15 +100,19 @@ export class Answer {
     return [["Distance", `${fixed(size(way), 3)} mm`], ["In x, y, z", point(way)], ["From", point(mm(this.points[0]))], ["To", point(mm(this.points[1]))]];
   }
 
-  /** On top of the picture that this camera of the server shows; by default the last one. */
-  draw(camera = this.camera, aspect = this.aspect) {
-    Object.assign(this, { camera, aspect });
-    const canvas = this.marks;
+  /** On top of the picture. */
+  draw() {
+    const { camera, aspect } = this.page;
+    const canvas = byId("marks");
     const ratio = pixelRatio();
     canvas.width = Math.round(canvas.clientWidth * ratio);
     canvas.height = Math.round(canvas.clientHeight * ratio);
     const context = canvas.getContext("2d");
-    if (this.lines) context.drawImage(this.lines, 0, 0, canvas.width, canvas.height);
+    if (this.lines) {
+      context.scale(1, -1);
+      context.drawImage(this.lines, 0, -canvas.height, canvas.width, canvas.height);
+      context.resetTransform();
+    }
     if (!camera) return;
     if (this.head) drawHead(context, project(camera, aspect, this.head)?.map((v, n) => v * [canvas.width, canvas.height][n]), ratio);
     if (!this.points.length) return;

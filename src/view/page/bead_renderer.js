@@ -9,6 +9,7 @@ import { LineRenderer } from "./line_renderer.js";
 import { ROW, fillTable, makeFramebuffer, makeIndices, makeProgram, makeTable, makeTexture, release, setUniforms } from "./webgl.js";
 import { dot, project, sub } from "./camera.js";
 
+const SETS = 3; // of coarse beads that are kept: each takes half of what the table takes
 const DRAW = 16384; // beads a call: their corners are counted in 16 bits
 
 export class BeadRenderer {
@@ -21,8 +22,8 @@ export class BeadRenderer {
     this.table = table;
     this.canvas = canvas;
     const most = gl.getParameter(gl.MAX_TEXTURE_SIZE);
-    if (most < ROW || table.texels > ROW * most) throw new Error("too many beads for its textures");
-    this.visible = new VisibleBeads(table.texels);
+    if (most < ROW || table.words.length / 4 > ROW * most) throw new Error("too many beads for its textures");
+    this.visible = new VisibleBeads(table.count);
     this.coarse = new Map(); // sets of CoarseBeads
     const { kinds } = table;
     this.beads = makeProgram(gl, beadVertices(kinds), beadFragments(kinds));
@@ -35,16 +36,11 @@ export class BeadRenderer {
       runs: makeTable(gl, table.runs, 4),
       shown: makeTable(gl, new Uint8Array(table.runs.length / 4).fill(1), 1),
       list: makeTable(gl, new Uint32Array(ROW), 1),
-      coarse: makeTable(gl, new Uint32Array(1), 1),
-      ends: makeTable(gl, new Uint32Array(1), 1),
       colors: makeTable(gl, new Uint16Array(1), 1),
-      palette: makeTexture(gl),
       light: makeTexture(gl, gl.LINEAR),
-      ids: makeTexture(gl),
-      normals: makeTexture(gl),
-      depths: makeTexture(gl),
-      picture: makeTexture(gl),
     };
+    for (const name of ["coarse", "ends"]) this.textures[name] = makeTable(gl, new Uint32Array(1), 1);
+    for (const name of ["palette", "ids", "normals", "depths", "picture"]) this.textures[name] = makeTexture(gl);
     this.listRows = 1;
     this.units = Object.fromEntries(Object.keys(this.textures).map((name, n) => [name, n]));
     const corners = new Uint16Array(6 * DRAW);
@@ -62,7 +58,7 @@ export class BeadRenderer {
     gl.bindFramebuffer(gl.FRAMEBUFFER, this.found);
     gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0, gl.TEXTURE_2D, found, 0);
     this.size = [0, 0];
-    this.range = [0, table.texels];
+    this.end = table.count;
     this.look = null;
     this.lines = new LineRenderer(gl);
     if (gl.getError()) throw new Error("not enough memory on its GPU");
@@ -73,13 +69,13 @@ export class BeadRenderer {
     release(this.gl);
   }
 
-  /** By run, which are shown; and the texels from, to that are printed. */
-  show(shown, range) {
+  /** By run, which are shown; and how many beads are printed. */
+  show(shown, end) {
     fillTable(this.gl, this.textures.shown, shown, 1);
-    this.range = range;
+    this.end = end;
   }
 
-  /** Colours by texel, as places in a palette of [r, g, b], linear; null: one for all. */
+  /** Colours by bead, as places in a palette of [r, g, b], linear; null: one for all. */
   paint(places, palette) {
     const gl = this.gl;
     this.colored = places !== null;
@@ -106,14 +102,16 @@ export class BeadRenderer {
     this.size = [width, height];
     this.canvas.width = width;
     this.canvas.height = height;
-    for (const name of ["ids", "normals"]) {
+    const numbers = [gl.R32UI, gl.RED_INTEGER, gl.UNSIGNED_INT];
+    const kinds = {
+      ids: numbers, normals: numbers,
+      picture: [gl.RGBA8, gl.RGBA, gl.UNSIGNED_BYTE],
+      depths: [gl.DEPTH_COMPONENT32F, gl.DEPTH_COMPONENT, gl.FLOAT],
+    };
+    for (const [name, [kind, format, type]] of Object.entries(kinds)) {
       gl.bindTexture(gl.TEXTURE_2D, this.textures[name]);
-      gl.texImage2D(gl.TEXTURE_2D, 0, gl.R32UI, width, height, 0, gl.RED_INTEGER, gl.UNSIGNED_INT, null);
+      gl.texImage2D(gl.TEXTURE_2D, 0, kind, width, height, 0, format, type, null);
     }
-    gl.bindTexture(gl.TEXTURE_2D, this.textures.picture);
-    gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA8, width, height, 0, gl.RGBA, gl.UNSIGNED_BYTE, null);
-    gl.bindTexture(gl.TEXTURE_2D, this.textures.depths);
-    gl.texImage2D(gl.TEXTURE_2D, 0, gl.DEPTH_COMPONENT32F, width, height, 0, gl.DEPTH_COMPONENT, gl.FLOAT, null);
     for (const [target, ...names] of [[this.target, "ids", "normals"], [this.quickTarget, "picture", "ids"]]) {
       gl.bindFramebuffer(gl.FRAMEBUFFER, target);
       names.forEach((name, n) => gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0 + n, gl.TEXTURE_2D, this.textures[name], 0));
@@ -133,7 +131,7 @@ export class BeadRenderer {
       eye: sub(camera.eye, low), grain, right: camera.right, up: camera.up, forward: camera.forward,
       slope: [(tangent * this.size[0]) / this.size[1], tangent],
       cut: [...normal, cut[3] / length - dot(normal, camera.eye)],
-      size: this.size, texels: this.range,
+      size: this.size, total: this.table.count, end: this.end,
     };
   }
 
@@ -156,12 +154,8 @@ export class BeadRenderer {
       gl.clearBufferfv(gl.DEPTH, 0, [0]);
       this.#drawList(this.beads, 1);
     }
-    for (let n = 0; n < parts; ++n) {
-      const part = this.visible.part();
-      if (!part) break;
-      this.#drawBeads(this.beads, 1, false, ...part);
-    }
-    return this.visible.partsLeft === 0;
+    for (let n = 0; n < parts && !this.visible.complete; ++n) this.#drawBeads(this.beads, 1, false, ...this.visible.part());
+    return this.visible.complete;
   }
 
   /** Shows what was collected. */
@@ -221,10 +215,14 @@ export class BeadRenderer {
     const tolerance = 2 ** Math.floor(Math.log2(pixel));
     const stride = 2 ** Math.floor(Math.log2(Math.max(1, Math.min(few, (1.5 * tolerance) / layerHeight))));
     const key = `${stride} ${tolerance}`;
-    if (!this.coarse.has(key)) this.coarse.set(key, new CoarseBeads(this.table, stride, tolerance));
+    if (!this.coarse.has(key)) {
+      const [oldest] = this.coarse.keys();
+      if (this.coarse.size >= SETS) this.coarse.delete(oldest);
+      this.coarse.set(key, new CoarseBeads(this.table, stride, tolerance));
+    }
     const coarse = Object.assign(this.coarse.get(key), { few });
     if (coarse === old) return old;
-    fillTable(this.gl, this.textures.coarse, coarse.texels, 1);
+    fillTable(this.gl, this.textures.coarse, coarse.beads, 1);
     fillTable(this.gl, this.textures.ends, coarse.ends, 1);
     this.visible.standFor(coarse);
     this.#bind();
@@ -252,8 +250,6 @@ export class BeadRenderer {
       this.listRows = 2 * rows;
       fillTable(gl, this.textures.list, new Uint32Array(this.listRows * ROW), 1);
       visible.changedFrom = 0;
-      gl.activeTexture(gl.TEXTURE0 + this.units.list);
-      gl.bindTexture(gl.TEXTURE_2D, this.textures.list);
     }
     gl.activeTexture(gl.TEXTURE0 + this.units.list);
     gl.bindTexture(gl.TEXTURE_2D, this.textures.list);
@@ -328,10 +324,8 @@ export class BeadRenderer {
     gl.drawArrays(gl.POINTS, 0, count);
     const found = new Uint32Array(rows * ROW);
     gl.readPixels(0, 0, ROW, rows, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(found.buffer));
-    for (let n = 0; n < count; ++n) {
-      const texel = coarse ? coarse.texels[first + n] : first + n;
-      if (found[n]) this.visible.expect(texel, texel + 1);
-    }
+    const beads = Array.from(found.subarray(0, count), (is, n) => is && (coarse ? coarse.beads[first + n] : first + n));
+    this.visible.expect(beads.filter((_, n) => found[n]));
   }
 
   /** Waits until the picture is there. */
@@ -344,7 +338,7 @@ export class BeadRenderer {
     this.visible.seen(this.ids(0, 0, ...this.size));
   }
 
-  /** Which texel + 1 is at each pixel of a rectangle, from below; 0: none. */
+  /** Which bead + 1 is at each pixel of a rectangle, from below; 0: none. */
   ids(x, y, width, height) {
     const gl = this.gl;
     gl.bindFramebuffer(gl.FRAMEBUFFER, this.target);

@@ -31,7 +31,8 @@ uvec4 row(usampler2D table, uint n) { return texelFetch(table, ivec2(n & ${(1 <<
 
 // What the programs share: a bead of the table, and where a ray meets it.
 const BEAD = `
-uniform usampler2D beads;   // a texel a bead, and one more for an arc or a bead that widens: see bead_table.h
+uniform usampler2D beads;   // a texel a bead, see bead_table.h; behind all of them what more belongs to them
+uniform uint total;         // beads
 uniform usampler2D runs;    // height, straight side (floats); layer; feature, tool, object
 uniform vec3 eye;           // from the corner that the table counts from
 uniform vec3 grain;         // mm a step of the table
@@ -88,7 +89,7 @@ Bead beadAt(uint n) {
   float widening = 0.0;
   uvec4 extra = uvec4(0u);
   if ((w.w & 4096u) != 0u) {
-    extra = row(beads, n + 1u);
+    extra = row(beads, total + n);
     widening = uintBitsToFloat(extra.w);
     b.flat0 = max(half_flat - 0.25 * widening, 0.0);
     b.flat1 = max(half_flat + 0.25 * widening, 0.0);
@@ -307,18 +308,13 @@ bool meets(Bead b, vec3 ray, out float depth, out vec3 normal) {
 // Which of the beads are drawn: of a range, or of a list of them.
 const CHOICE = `
 uniform usampler2D shown;   // by run
-uniform usampler2D list;    // of texels; used if from_list
+uniform usampler2D list;    // of beads; used if from_list
 uniform bool from_list;
 uniform uint first;         // of the draw
-uniform uvec2 texels;       // that are printed: from, to
+uniform uint end;           // beads that are printed
 uint chosen(uint n) { return from_list ? row(list, first + n).x : first + n; }
-bool isShown(uint n) {
-  if (n < texels.x || n >= texels.y) return false;
-#ifdef EXTRAS
-  if (n > 0u && (row(beads, n - 1u).w & 4096u) != 0u) return false;
-#endif
-  return row(shown, row(beads, n).w >> 13u).x != 0u;
-}`;
+uint shownAs(uint n) { return n < end ? row(shown, row(beads, n).w >> 13u).x : 0u; } // see BeadTable.shown()
+bool isShown(uint n) { return shownAs(n) != 0u; }`;
 
 /** Both, of a table that has these kinds of beads. */
 export const bead = (kinds) =>
@@ -340,7 +336,7 @@ void main() {
   // The box as a line along the bead, and what it reaches to the sides of that.
   vec3 u = vec3(body.along, 0.0), v = vec3(-body.along.y, body.along.x, 0.0);
   vec3 middle = 0.5 * (low + high), half_size = 0.5 * (high - low);
-  mat3 eyes = mat3(right.x, up.x, forward.x, right.y, up.y, forward.y, right.z, up.z, forward.z);
+  mat3 eyes = transpose(mat3(right, up, forward));
   vec3 center = eyes * (body.start + u * middle.x + v * middle.y + vec3(0.0, 0.0, middle.z));
   vec3 x = eyes * (u * half_size.x), y = eyes * (v * half_size.y), z = eyes * vec3(0.0, 0.0, half_size.z);
   float deep = abs(y.z) + abs(z.z);

@@ -34,7 +34,15 @@ export class OrbitCamera {
     return orbit;
   }
 
-  /** As a part of the state. */
+  /** As the server describes one. */
+  get camera() {
+    const { eye, right, up, fov } = this;
+    return { eye, forward: times(this.outward, -1), right, up, fov };
+  }
+  /** Of a part of the state. */
+  static fromJSON({ eye, look_at, fov }) {
+    return OrbitCamera.from({ eye, forward: unit(sub(look_at, eye)), up: [0, 0, 1], fov }, look_at);
+  }
   toJSON() {
     return { eye: rounded(this.eye), look_at: rounded(this.target), fov: this.fov };
   }
@@ -105,8 +113,9 @@ export function handleInput(element, { orbit, moved, clicked, key }) {
     timer = setTimeout(() => moved(false), 180);
   };
   const place = (event) => [event.clientX, event.clientY];
+  /** Of one pointer, or of two. */
   const spread = () => {
-    const [a, b] = [...pointers.values()];
+    const [a, b = a] = pointers.values();
     return { middle: [(a[0] + b[0]) / 2, (a[1] + b[1]) / 2], distance: Math.hypot(a[0] - b[0], a[1] - b[1]) };
   };
 
@@ -117,24 +126,17 @@ export function handleInput(element, { orbit, moved, clicked, key }) {
     element.classList.add("turning");
   });
   element.addEventListener("pointermove", (event) => {
-    const last = pointers.get(event.pointerId);
-    if (!last) return;
-    const now = place(event);
-    const [dx, dy] = [now[0] - last[0], now[1] - last[1]];
-    travelled += Math.abs(dx) + Math.abs(dy);
-    const height = element.clientHeight;
-    if (pointers.size === 2) {
-      const before = spread();
-      pointers.set(event.pointerId, now);
-      const after = spread();
-      orbit().zoom(before.distance / Math.max(1, after.distance));
-      orbit().pan((after.middle[0] - before.middle[0]) / height, -(after.middle[1] - before.middle[1]) / height);
-      moved(true);
-      return;
-    }
-    pointers.set(event.pointerId, now);
+    if (!pointers.has(event.pointerId)) return;
+    const before = spread();
+    pointers.set(event.pointerId, place(event));
+    const after = spread();
+    const [dx, dy] = [0, 1].map((axis) => after.middle[axis] - before.middle[axis]);
+    travelled += Math.abs(dx) + Math.abs(dy) + Math.abs(after.distance - before.distance);
     if (travelled < 4) return; // a click may tremble
-    if (event.buttons & 6 || event.shiftKey) orbit().pan(dx / height, -dy / height);
+    const height = element.clientHeight;
+    const two = pointers.size === 2;
+    if (two) orbit().zoom(before.distance / Math.max(1, after.distance));
+    if (two || event.buttons & 6 || event.shiftKey) orbit().pan(dx / height, -dy / height);
     else orbit().turn((dx / height) * 3.2, (dy / height) * 3.2);
     moved(true);
   });
@@ -161,13 +163,13 @@ export function handleInput(element, { orbit, moved, clicked, key }) {
   }, { passive: false });
 
   const turns = { ArrowLeft: [1, 0], ArrowRight: [-1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] };
+  const zooms = { "+": 0.9, "=": 0.9, "-": 1 / 0.9 };
   element.addEventListener("keydown", (event) => {
     if (event.ctrlKey || event.metaKey || event.altKey) return;
     const way = turns[event.key];
     if (way && event.shiftKey) orbit().pan(way[0] * 0.05, way[1] * 0.05);
     else if (way) orbit().turn(way[0] * 0.08, -way[1] * 0.08);
-    else if (event.key === "+" || event.key === "=") orbit().zoom(0.9);
-    else if (event.key === "-") orbit().zoom(1 / 0.9);
+    else if (zooms[event.key]) orbit().zoom(zooms[event.key]);
     else return key(event) && event.preventDefault(); // else it would be typed where the focus goes
     event.preventDefault();
     step();

@@ -8,24 +8,23 @@ export class CoarseBeads {
   /** One of `stride` layers, and within `tolerance`, mm. */
   constructor(table, stride, tolerance) {
     Object.assign(this, { stride, tolerance });
-    this.ofTexel = new Uint32Array(table.texels).fill(NONE); // which one stands for it
-    this.ends = new Uint32Array(table.texels); // the last texel that one stands for
-    const texels = new Uint32Array(table.texels);
+    this.ofBead = new Uint32Array(table.count).fill(NONE); // which one stands for it
+    this.ends = new Uint32Array(table.count); // the last bead that one stands for
+    const beads = new Uint32Array(table.count);
     let count = 0;
-    for (let n = 0; n < table.texels; ++n) {
-      const end = table.layerOf(n) % stride === 0 ? lastOf(table, n, tolerance) : n;
-      if (table.layerOf(n) % stride === 0) {
-        texels[count++] = n;
-        this.ofTexel.fill(n, n, end + 1);
-        this.ends[n] = end;
-      }
-      n = table.hasExtra(end) ? end + 1 : end;
+    for (let n = 0; n < table.count; ++n) {
+      if (table.layerOf(n) % stride !== 0) continue;
+      const end = lastOf(table, n, tolerance);
+      beads[count++] = n;
+      this.ofBead.fill(n, n, end + 1);
+      this.ends[n] = end;
+      n = end;
     }
-    this.texels = texels.slice(0, count); // of those that stand for others
+    this.beads = beads.slice(0, count); // those that stand for others
   }
 }
 
-/** The last of the beads from a texel on that lie within a tolerance of one straight bead. */
+/** The last of the beads from one on that lie within a tolerance of one straight bead. */
 function lastOf(table, first, tolerance) {
   const { words, grain } = table;
   if (table.hasExtra(first)) return first;
@@ -36,7 +35,7 @@ function lastOf(table, first, tolerance) {
   let length = 0;
   for (let n = first; n - first < MOST; ++n) {
     const word = words[4 * n + 3];
-    if (n >= table.texels || word >>> 13 !== tags >>> 13 || word & 4096 || Math.abs((word & 4095) - (tags & 4095)) > 25) break;
+    if (n >= table.count || word >>> 13 !== tags >>> 13 || word & 4096 || Math.abs((word & 4095) - (tags & 4095)) > 25) break;
     if (n > first && (words[4 * n] !== words[4 * n - 3] || (words[4 * n + 2] & 65535) !== words[4 * n - 2] >>> 16)) break; // it does not go on
     const [dx, dy] = [at(words[4 * n + 1], 0) - x, at(words[4 * n + 1], 1) - y];
     const chord = Math.hypot(dx, dy);

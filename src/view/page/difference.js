@@ -3,29 +3,22 @@
 const NEAR = 0.01; // mm
 const CELL = [0.5, 0.5, 0.05]; // mm, of the map that finds a bead by its middle
 
-/** Six coordinates of the ends, and the width, of each bead of a table; null where a texel is none. */
+/** Six coordinates of the ends, and the width, of each bead of a table. */
 function endsOf(table) {
-  const ends = new Float64Array(7 * table.texels).fill(NaN);
-  for (let n = 0; n < table.texels; ++n) {
-    const [from, to] = table.ends(n);
-    ends.set(from, 7 * n);
-    ends.set(to, 7 * n + 3);
-    ends[7 * n + 6] = table.width(n);
-    if (table.hasExtra(n)) ++n;
-  }
+  const ends = new Float64Array(7 * table.count);
+  for (let n = 0; n < table.count; ++n) ends.set([...table.ends(n).flat(), table.width(n)], 7 * n);
   return ends;
 }
 
 const keyOf = ([x, y, z]) => ((x + 8192) * 16384 + y + 8192) * 65536 + z + 4096;
 
-/** By texel of the first table: 1 where the second has no such bead. */
+/** By bead of the first table: 1 where the second has no such bead. */
 export function onlyIn(table, other) {
   const [mine, theirs] = [endsOf(table), endsOf(other)];
   const middle = (ends, n, axis) => (ends[7 * n + axis] + ends[7 * n + 3 + axis]) / 2;
   const first = new Map();
-  const next = new Int32Array(other.texels).fill(-1);
-  for (let n = 0; n < other.texels; ++n) {
-    if (Number.isNaN(theirs[7 * n])) continue;
+  const next = new Int32Array(other.count).fill(-1);
+  for (let n = 0; n < other.count; ++n) {
     const key = keyOf(CELL.map((size, axis) => Math.floor(middle(theirs, n, axis) / size)));
     next[n] = first.get(key) ?? -1;
     first.set(key, n);
@@ -43,18 +36,16 @@ export function onlyIn(table, other) {
           for (let m = first.get(keyOf([x, y, z])) ?? -1; m >= 0; m = next[m]) if (same(n, m)) return true;
     return false;
   };
-  const only = new Uint16Array(table.texels);
-  for (let n = 0; n < table.texels; ++n) if (!Number.isNaN(mine[7 * n]) && !found(n)) only[n] = 1;
-  return only;
+  return Uint16Array.from({ length: table.count }, (_, n) => Number(!found(n)));
 }
 
 /** Beads and mm of a mask of onlyIn(), of what the state shows. */
 export function amount(table, only, state) {
   let [beads, length] = [0, 0];
-  table.each(state, (texel) => {
-    if (!only[texel]) return;
+  table.each(state, (bead) => {
+    if (!only[bead]) return;
     ++beads;
-    length += table.length(texel);
+    length += table.length(bead);
   });
   return { beads, length };
 }

@@ -17,25 +17,30 @@ export function swatch(color) {
   return made;
 }
 
-/** A box with its label, which is `beside`; changed(box) when it is ticked or not. */
+/** A box with its label, which is `beside`; changed(on) when it is ticked or not. */
 export function checkbox(value, changed, ...beside) {
   const box = element("input", { type: "checkbox", value });
-  box.addEventListener("change", () => changed(box));
+  follow(box, changed);
   return element("label", {}, box, ...beside);
 }
 
-/** take(value, moving) of a slider, while it moves and where it stops. */
-export function follow(slider, take) {
-  slider.addEventListener("input", () => take(Number(slider.value), true));
-  slider.addEventListener("change", () => take(Number(slider.value), false));
+/** take(value, moving) of a control; a slider tells also while it moves. */
+export function follow(control, take) {
+  const value = () => (control.type === "checkbox" ? control.checked : control.type === "range" ? control.valueAsNumber : control.value);
+  if (control.type === "range") control.addEventListener("input", () => take(value(), true));
+  control.addEventListener("change", () => take(value(), false));
+}
+export function setValue(control, value) {
+  if (control.type === "checkbox") control.checked = value;
+  else control.value = value;
 }
 
 /** Other children for a place. What has the focus there keeps it, if there is one of the same name or value again. */
 export function renew(place, ...children) {
-  const name = (each) => each.dataset.name ?? (each.ariaLabel || each.value);
+  const name = (each) => each.ariaLabel || each.value;
   const focused = place.contains(document.activeElement) ? name(document.activeElement) : undefined;
   place.replaceChildren(...children);
-  if (focused !== undefined) [...place.querySelectorAll("[tabindex], input, select, button")].find((each) => name(each) === focused)?.focus();
+  if (focused !== undefined) [...place.querySelectorAll("input, select, button")].find((each) => name(each) === focused)?.focus();
 }
 
 /** Pairs of text and value as the options of a list. */

@@ -7,10 +7,10 @@ const HINTS = { text: "M106", line: "1200", time: "1:25:00", layer: "12" };
 export class Finder {
   #line = 0; // that was found last
 
-  /** send(message): to the server; go(bead, layer, lines): shows what is printed up to a bead; goTo(number): a layer, of
-   * layers(). */
-  constructor({ send, go, goTo, layers }) {
-    Object.assign(this, { send, go, goTo, layers });
+  /** page: see main.js. */
+  constructor(page) {
+    this.page = page;
+    page.connection.on("found", (found) => this.#take(found));
     byId("find").addEventListener("submit", (event) => (event.preventDefault(), this.#ask(false)));
     byId("find-back").addEventListener("click", () => this.#ask(true));
     byId("find-what").addEventListener("change", () => {
@@ -38,25 +38,26 @@ export class Finder {
     const what = byId("find-what").value;
     const wanted = byId("find-for").value.trim();
     if (!wanted) return;
-    if (what === "text") return this.send({ type: "find", text: wanted, line: this.#line, back });
+    if (what === "text") return this.page.connection.send({ type: "find", text: wanted, line: this.#line, back });
     const number = what === "time" ? secondsOf(wanted) : /^\d+$/.test(wanted) ? Number(wanted) : NaN;
     if (!(number >= 0 && number < 1e9) || (what === "line" && !number)) return this.#say(`That is no ${what}: write it as ${HINTS[what]}.`);
     if (what === "layer") return this.#askLayer(number);
-    this.send({ type: "find", [what === "time" ? "seconds" : "line"]: number });
+    this.page.connection.send({ type: "find", [what === "time" ? "seconds" : "line"]: number });
   }
 
   #askLayer(number) {
-    const count = this.layers();
+    const count = this.page.controls.layerCount;
     if (number < 1 || number > count) return this.#say(`The print has layers 1 to ${count}.`);
-    this.goTo(number);
+    this.page.controls.goTo(number);
     this.#say(`layer ${number}`);
   }
 
   /** What the server has found. */
-  take(found) {
+  #take(found) {
     if (found.matches === 0) return this.#say("The program has no such text.");
     this.#line = found.line;
     this.#say(`${found.matches ? `${found.match} of ${found.matches}: ` : ""}line ${found.line}, layer ${found.layer}`);
-    this.go(found.bead, found.layer, linesOf(found.lines, found.line));
+    this.page.controls.goTo(found.layer);
+    this.page.motion.go(found.bead, linesOf(found.lines, found.line));
   }
 }

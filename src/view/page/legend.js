@@ -1,34 +1,36 @@
 // What the colours mean, in units as people write them.
 import { clock, secondsOf } from "./answer.js";
-import { element, renew, setOptions, swatch } from "./elements.js";
+import { withOrWithout } from "./state.js";
+import { byId, checkbox, element, follow, renew, setOptions, swatch } from "./elements.js";
 
 const UNITS = { "mm^3/s": "mm³/s", C: "°C", s: "h:min:s" };
 const BARS = 32;
 const number = (value, unit) => (unit === "s" ? clock(value) : Number(value.toPrecision(4)).toString());
 
 export class Legend {
+  #place = byId("legend");
   #legends = [];
   #shares = new Map(); // of the filament, by feature
-
   #by_time = false; // the histogram
 
-  /** toggle(name) hides a feature or shows it again: hidden() are names. range() are the ends of the scale that were
-   * chosen, or null, setRange() sets them; histogram(least, most, count, by_time) as OwnPicture's. */
-  constructor(place, { hidden, toggle, range, setRange, histogram }) {
-    Object.assign(this, { place, hidden, toggle, range, setRange, histogram });
+  /** page: see main.js. */
+  constructor(page) {
+    this.page = page;
+    page.connection.on("facts", ({ facts }) => this.#setFeatures(facts.print?.features ?? []));
+    page.connection.on("scene", ({ legends }) => this.#setLegends(legends));
   }
 
-  setFeatures(features) {
+  #setFeatures(features) {
     const all = features.reduce((sum, each) => sum + each.volume_mm3, 0);
     this.#shares = new Map(features.map((each) => [each.name, each.volume_mm3 / all]));
   }
   /** A feature that is hidden stays in the legend, to be shown again. */
-  setLegends(legends) {
+  #setLegends(legends) {
     const old = this.#legends.flatMap((each) => each.entries);
-    const gone = ({ title, entries }) => old.filter(({ name }) => title === "feature" && this.hidden().includes(name) && !entries.some((each) => each.name === name));
+    const gone = ({ title, entries }) => old.filter(({ name }) => title === "feature" && this.page.state.hidden_features.includes(name) && !entries.some((each) => each.name === name));
     this.#legends = legends.map((each) => ({ ...each, entries: [...each.entries, ...gone(each)] }));
-    this.place.hidden = legends.length === 0;
-    renew(this.place, ...this.#legends.flatMap((each) => [
+    this.#place.hidden = legends.length === 0;
+    renew(this.#place, ...this.#legends.flatMap((each) => [
       element("h2", {}, [each.title.replace("_", " "), UNITS[each.unit] ?? each.unit].filter(Boolean).join(", ")),
       ...(each.ramp.length ? this.#scale(each) : [this.#list(each)]),
     ]));
@@ -44,20 +46,19 @@ export class Legend {
         const typed = inputs.map((each) => (unit === "s" ? secondsOf(each.value.trim()) : Number(each.value || NaN)));
         // What was not typed keeps its digits.
         const range = typed.map((each, k) => (inputs[k] === input ? each : [least, most][k]));
-        if (range[0] < range[1]) this.setRange(range);
+        if (range[0] < range[1]) this.page.change({ color_range: range });
         else input.value = number(value, unit);
       });
       return input;
     });
-    const all = element("button", { type: "button", title: "From the least value to the most", hidden: !this.range() }, "All");
-    all.addEventListener("click", () => this.setRange(null));
-    const ends = element("form", { className: "ends" }, inputs[0], all, inputs[1]);
-    ends.addEventListener("submit", (event) => event.preventDefault());
+    const all = element("button", { type: "button", title: "From the least value to the most", hidden: !this.page.state.color_range }, "All");
+    all.addEventListener("click", () => this.page.change({ color_range: null }));
+    const ends = element("div", { className: "ends" }, inputs[0], all, inputs[1]);
     const by = element("select", { className: "by", ariaLabel: "Histogram" });
     setOptions(by, [["by length", ""], ["by time", "1"]]);
     by.value = this.#by_time ? "1" : "";
-    by.addEventListener("change", () => {
-      this.#by_time = by.value !== "";
+    follow(by, (value) => {
+      this.#by_time = value !== "";
       this.weigh();
     });
     return [element("div", { className: "bars" }), bar, ends, by];
@@ -65,11 +66,11 @@ export class Legend {
 
   /** The histogram of what is shown now. */
   weigh() {
-    const bars = this.place.querySelector(".bars");
+    const bars = this.#place.querySelector(".bars");
     if (!bars) return;
     const { least, most } = this.#legends.find((each) => each.ramp.length);
-    const sums = this.histogram(least, most, BARS, this.#by_time);
-    bars.hidden = this.place.querySelector(".by").hidden = !sums;
+    const sums = this.page.own.histogram(this.page.state, least, most, BARS, this.#by_time);
+    bars.hidden = this.#place.querySelector(".by").hidden = !sums;
     if (!sums) return bars.replaceChildren();
     const highest = Math.max(...sums);
     const unit = (sum) => (this.#by_time ? clock(sum) : `${(sum / 1000).toFixed(2)} m`);
@@ -81,20 +82,13 @@ export class Legend {
   }
 
   #list({ title, entries }) {
-    const list = element("ul");
-    for (const { name, color } of entries) {
-      const item = element("li", {}, swatch(color), name);
-      list.append(item);
-      if (title !== "feature" || !this.#shares.has(name)) continue;
-      item.append(element("output", {}, `${(100 * this.#shares.get(name)).toFixed(1)} %`));
-      item.setAttribute("role", "checkbox");
-      item.setAttribute("aria-checked", String(!this.hidden().includes(name)));
-      item.tabIndex = 0;
-      item.dataset.name = name;
-      const press = () => this.toggle(name);
-      item.addEventListener("click", press);
-      item.addEventListener("keydown", (event) => (event.key === " " || event.key === "Enter") && (event.preventDefault(), press()));
-    }
-    return list;
+    return element("ul", {}, ...entries.map(({ name, color }) => {
+      if (title !== "feature" || !this.#shares.has(name)) return element("li", {}, swatch(color), name);
+      const { hidden_features: hidden } = this.page.state;
+      const changed = (on) => this.page.select({ hidden_features: withOrWithout(hidden, name, !on) });
+      const label = checkbox(name, changed, swatch(color), name, element("output", {}, `${(100 * this.#shares.get(name)).toFixed(1)} %`));
+      label.control.checked = !hidden.includes(name);
+      return element("li", {}, label);
+    }));
   }
 }

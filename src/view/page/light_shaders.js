@@ -83,7 +83,7 @@ void main() {
 
 /** The colour of a bead under that light. */
 export const COLORED = `
-uniform usampler2D colors;  // by texel, places of the palette
+uniform usampler2D colors;  // by bead, places of the palette
 uniform sampler2D palette;
 uniform bool colored, as_normals;
 uniform vec3 albedo;

@@ -85,7 +85,7 @@ export class LineRenderer {
     }
   }
 
-  /** The lines of the last picture alone, as a canvas; null if there are none. */
+  /** The lines of the last picture alone, as a canvas that is upside down; null if there are none. */
   alone() {
     const gl = this.gl;
     if (!this.last || ![...this.sets.values()].some(({ kinds, count }) => kinds && count)) return null;
@@ -97,10 +97,8 @@ export class LineRenderer {
     gl.clearBufferfv(gl.COLOR, 0, [0, 0, 0, 0]);
     this.draw(...this.last);
     const image = new ImageData(width, height);
-    const rows = new Uint8Array(4 * width * height);
-    gl.readPixels(0, 0, width, height, gl.RGBA, gl.UNSIGNED_BYTE, rows);
+    gl.readPixels(0, 0, width, height, gl.RGBA, gl.UNSIGNED_BYTE, image.data);
     gl.bindFramebuffer(gl.FRAMEBUFFER, null);
-    for (let y = 0; y < height; ++y) image.data.set(rows.subarray(4 * width * y, 4 * width * (y + 1)), 4 * width * (height - 1 - y));
     const canvas = new OffscreenCanvas(width, height);
     canvas.getContext("2d").putImageData(image, 0, 0);
     return canvas;

@@ -1,13 +1,12 @@
 // The page of vdbview: the picture, and what changes it.
 import { Answer, clock } from "./answer.js";
-import { OrbitCamera, handleInput, middleOf, sub, unit } from "./camera.js";
+import { OrbitCamera, handleInput, middleOf } from "./camera.js";
 import { Connection } from "./connection.js";
 import { Controls } from "./controls.js";
 import { byId, pixelRatio, setOptions } from "./elements.js";
 import { Finder } from "./finder.js";
 import { MotionPanel } from "./motion_panel.js";
-import { KINDS } from "./move_table.js";
-import { OwnPicture, cameraOf } from "./own_picture.js";
+import { OwnPicture } from "./own_picture.js";
 import { Legend } from "./legend.js";
 import { Saving } from "./saving.js";
 import { SecondPrint } from "./second_print.js";
@@ -17,7 +16,8 @@ const picture = byId("picture");
 const context = picture.getContext("2d");
 
 let { state, file, wrong } = fromFragment(location.hash);
-let orbit = state.camera.eye ? orbitOf(state.camera) : null;
+const orbitOf = ({ camera: its }) => (its.eye ? OrbitCamera.fromJSON(its) : null); // null: a named view
+let orbit = orbitOf(state);
 let camera = null; // of the last picture
 let aspect = 16 / 9;
 let box = null;
@@ -25,7 +25,6 @@ let number = 0; // of the last view that was asked for
 let asked = null; // a view that waits for the next frame
 const sentAt = new Map(); // times by number
 let viewFrom = 0; // the first number that the named view has
-let generation; // of the input's file
 let latest = 0; // the number that the last picture answers
 let awaited = false; // a finished picture
 let shownSize = [0, 0]; // of the last view that was asked for
@@ -34,37 +33,46 @@ const log = (window.vdbviewLog = []);
 window.vdbviewAsked = () => number;
 window.vdbviewCounts = () => own.counts();
 
-function orbitOf({ eye, look_at, fov }) {
-  return OrbitCamera.from({ eye, forward: unit(sub(look_at, eye)), up: [0, 0, 1], fov }, look_at);
-}
 const url = `${location.protocol === "https:" ? "wss" : "ws"}://${location.host}${location.pathname}socket`;
 const connection = new Connection(url);
-const controls = new Controls({ state: () => state, changed: (moving) => ask(moving), hold, eye: () => camera?.eye ?? null });
 const own = new OwnPicture(byId("beads"));
 const streamed = new URLSearchParams(location.search).has("stream"); // as if there were no WebGL2
-const legend = new Legend(byId("legend"), {
-  hidden: () => state.hidden_features,
-  toggle: (name) => controls.toggleFeature(name),
-  range: () => state.color_range,
-  setRange: (range) => {
-    state.color_range = range;
-    ask(false);
+/** What the parts of the page know of it. */
+const page = {
+  connection,
+  own,
+  ask,
+  say,
+  pixels,
+  get state() {
+    return state;
   },
-  histogram: (...of) => own.histogram(state, ...of),
-});
-const motion = new MotionPanel({ state: () => state, changed: (moving) => ask(moving), hold, own, send: (message) => connection.send(message) });
-const second = new SecondPrint({ url, own, state: () => state, changed: () => ask(false) });
-const finder = new Finder({
-  send: (message) => connection.send(message),
-  go: (bead, layer, lines) => {
-    controls.goTo(layer);
-    motion.go(bead, lines);
+  /** Of the last picture; null: there is none. */
+  get camera() {
+    return camera;
   },
-  goTo: (layer) => controls.goTo(layer),
-  layers: () => controls.layerCount,
-});
-let movesAsked = false;
-const answer = new Answer(byId("answer"), byId("marks"));
+  get aspect() {
+    return aspect;
+  },
+  /** Other values of the state. */
+  change(values, moving = false) {
+    Object.assign(state, values);
+    controls.show();
+    ask(moving);
+  },
+  /** The same of what is printed, which must not move the camera. */
+  select(values, moving) {
+    hold();
+    page.change(values, moving);
+  },
+};
+const controls = (page.controls = new Controls(page));
+const legend = new Legend(page);
+const motion = (page.motion = new MotionPanel(page));
+const second = new SecondPrint(page);
+const finder = new Finder(page);
+new Saving(page);
+const answer = new Answer(page);
 
 // ---------------------------------------------------------------- asking
 
@@ -84,7 +92,6 @@ function sendAsked() {
   asked = null;
   if (orbit) state.camera = orbit.toJSON();
   shownSize = pixels();
-  askMoves();
   if (own.ready) drawOwn(moving);
   motion.show();
   if (!connection.ready) return;
@@ -95,18 +102,10 @@ function sendAsked() {
   if (!moving) history.replaceState(null, "", location.pathname + location.search + toFragment(state, file));
 }
 
-/** Travels and marks come when they are first wanted. */
-function askMoves() {
-  if (movesAsked || !own.table?.complete || !KINDS.some(([name]) => state.also.includes(name))) return;
-  movesAsked = true;
-  connection.send({ type: "moves" });
-}
-
 /** The beads in front of the camera, at once; a named view waits for the server, which fits it. */
 function drawOwn(moving) {
-  const from = orbit ? cameraOf(state.camera) : camera;
-  if (!from) return;
-  camera = from;
+  camera = orbit?.camera ?? camera;
+  if (!camera) return;
   aspect = shownSize[0] / shownSize[1];
   picture.classList.add("behind");
   byId("loading").hidden = true;
@@ -114,7 +113,7 @@ function drawOwn(moving) {
   answer.head = own.head(state);
   own.draw(camera, state, shownSize, moving);
   second.draw(camera, state, shownSize, moving);
-  answer.draw(camera, aspect);
+  answer.draw();
   const [width, height] = own.size;
   record({ kind: "own", number, at: performance.now(), width, height, bytes: 0 });
   if (moving) say(`${width} × ${height}`);
@@ -122,23 +121,19 @@ function drawOwn(moving) {
 
 own.addEventListener("complete", () => {
   answer.lines = own.lines();
-  answer.draw(camera, aspect);
+  answer.draw();
 });
 own.addEventListener("moves", () => ask(false));
 own.addEventListener("changed", () => {
-  if (!own.table) movesAsked = false;
   motion.show();
-  const reason = streamed ? "as the address asks" : own.why;
-  byId("mover").textContent = own.ready ? "drawn by this browser" : `streamed by the server${reason ? `: ${reason}` : ""}`;
+  byId("mover").textContent = own.ready ? "drawn by this browser" : `streamed by the server${own.why ? `: ${own.why}` : ""}`;
   document.body.dataset.moving = own.ready ? "own" : "stream";
   if (own.table?.complete && !own.why && !own.ready) ask(false); // for the light
   if (own.why && latest > 0 && picture.classList.contains("behind")) ask(false);
 });
 
 function setView(view) {
-  orbit = null;
-  viewFrom = number + 1;
-  state.camera = { view, fov: state.camera.fov };
+  setState({ ...state, camera: { view, fov: state.camera.fov } });
   ask(false);
 }
 
@@ -162,10 +157,7 @@ let [arrivedLast, drawnLast] = [0, 0]; // decoding may end in another order than
 
 connection.on("picture", async (detail) => {
   const arrived = performance.now();
-  if (detail.kind === "saved") {
-    connection.send({ type: "shown" });
-    return saving.take(detail.file);
-  }
+  if (detail.kind === "saved") return connection.send({ type: "shown" });
   const order = ++arrivedLast;
   const bitmap = await createImageBitmap(detail.file);
   connection.send({ type: "shown" });
@@ -183,7 +175,7 @@ connection.on("picture", async (detail) => {
   aspect = detail.width / detail.height;
   latest = detail.number;
   document.body.classList.remove("stale");
-  answer.draw(camera, aspect);
+  answer.draw();
   tellCommand(detail);
   byId("loading").hidden = true;
   if (byId("trouble").dataset.of === "view") byId("trouble").hidden = true;
@@ -206,7 +198,9 @@ function record(entry) {
 // ---------------------------------------------------------------- what the server says
 
 const tellCommand = ({ command }) => (byId("command").textContent = `${command} -o picture.png`);
-const say = (text) => (byId("status").textContent = text);
+function say(text) {
+  byId("status").textContent = text;
+}
 function trouble(text, of = "") {
   byId("trouble-text").textContent = text;
   byId("trouble").dataset.of = of;
@@ -228,11 +222,9 @@ on("hello", (detail) => {
   if (wrong) trouble(wrong);
   wrong = "";
   setOptions(byId("file"), detail.files.map((name, n) => [name, n]));
-  saving.forget();
   nameFile(file);
   if (file > 0) connection.send({ type: "open", file });
   ask(false);
-  askBeads();
 });
 /** One of the inputs, or the last one. */
 function nameFile(wanted) {
@@ -247,36 +239,26 @@ function openFile(wanted, view) {
   nameFile(wanted);
   setState(view);
   latest = 0;
+  camera = null;
   answer.reset();
-  generation = undefined;
-  own.refuse("the beads are not here yet");
+  print = null;
   connection.send({ type: "open", file });
+  own.open();
   ask(false);
-  askBeads();
 }
 function setState(view) {
   state = view;
-  orbit = view.camera.eye ? orbitOf(view.camera) : null;
+  orbit = orbitOf(view);
   viewFrom = number + 1;
 }
-function askBeads() {
-  movesAsked = false;
-  if (streamed) own.refuse("");
-  else connection.send({ type: "beads" });
-}
-own.listen(connection);
+if (streamed) own.refuse("as the address asks");
+else own.listen(connection);
 on("no-moves", (detail) => {
-  movesAsked = false;
   state.also = [];
   motion.show();
   trouble(detail.text, "view");
 });
-on("layers", (detail) => {
-  motion.setLayers(detail);
-  tellFacts();
-});
-on("program", (detail) => motion.setProgram(detail));
-on("found", (detail) => finder.take(detail));
+on("layers", tellFacts);
 on("look", (detail) => {
   tellCommand(detail);
   if (detail.number !== number) return own.illuminate(detail);
@@ -295,6 +277,7 @@ on("loading", (detail) => {
   else byId("done").value = detail.done;
 });
 let print = null; // what is known of it
+let generation; // of its file
 function tellFacts() {
   const seconds = print?.seconds ? clock(print.seconds) : motion.planned && `${clock(motion.planned)} planned`;
   byId("facts").textContent = print
@@ -302,8 +285,7 @@ function tellFacts() {
     : "";
 }
 on("facts", ({ facts }) => {
-  controls.setFacts(facts);
-  if (generation !== facts.generation || !print) {
+  if (!print || generation !== facts.generation) {
     motion.setFacts(facts);
     finder.reset();
   }
@@ -311,36 +293,27 @@ on("facts", ({ facts }) => {
   own.setBed(print?.bed ?? null, print?.excluded);
   motion.show();
   tellFacts();
-  legend.setFeatures(print?.features ?? []);
   byId("loading").hidden = latest > 0;
-  if (generation !== undefined && generation !== facts.generation) askBeads();
   generation = facts.generation;
 });
 on("scene", (detail) => {
   box = detail.box;
   answer.mm = detail.mm_per_unit;
-  controls.setBox(box);
-  legend.setLegends(detail.legends);
 });
 on("progress", (detail) => {
   if (detail.number === number) say(`finishing … ${Math.round(detail.done * 100)} %`);
 });
-on("saving", (detail) => saving.progress(detail));
 on("failed", (detail) => {
-  saving.forget(); // the server has given up all of this view
   trouble(detail.text, "view");
   document.body.classList.add("stale"); // what is on the screen is not what was asked for
   byId("command").textContent = "";
 });
-on("refused", (detail) => {
-  motion.setProgram(null); // that may be what was asked for
-  trouble(detail.text, "view");
-});
+on("refused", ({ text }) => trouble(text, "view"));
 on("inspected", (detail) => {
   window.vdbviewFound = detail;
   if (turns) turnAbout(detail);
   answer.show(detail);
-  answer.draw(camera, aspect);
+  answer.draw();
 });
 
 // ---------------------------------------------------------------- controls
@@ -379,9 +352,9 @@ handleInput(picture, {
   clicked: (x, y) => {
     turns = false;
     // At once what the table says; the server answers with the place, the time and the line.
-    const texel = answer.measuring ? -1 : own.at(x, y);
-    window.vdbviewPicked = texel < 0 ? null : own.table.describe(texel);
-    if (texel >= 0) answer.show({ hit: true, bead: own.table.describe(texel) });
+    const seen = answer.measuring ? -1 : own.at(x, y);
+    const bead = (window.vdbviewPicked = seen < 0 ? null : own.table.describe(seen));
+    if (bead) answer.show({ hit: true, bead });
     connection.send({ type: "inspect", number, x: Math.min(1, Math.max(0, x)), y: Math.min(1, Math.max(0, y)) });
   },
   key: (event) => {
@@ -409,16 +382,6 @@ byId("measure").addEventListener("click", () => setMeasuring(!answer.measuring))
 byId("trouble-close").addEventListener("click", () => (byId("trouble").hidden = true));
 byId("copy-command").addEventListener("click", () => copy(byId("command").textContent, "command"));
 byId("copy-link").addEventListener("click", () => copy(location.href, "link"));
-const saving = new Saving(byId("save"), {
-  ask: () => {
-    if (orbit) state.camera = orbit.toJSON();
-    const chosen = byId("save-size").value;
-    return toMessage(state, chosen ? chosen.split("x").map(Number) : pixels());
-  },
-  send: (message) => connection.send(message),
-  say,
-  name: () => byId("file").selectedOptions[0]?.textContent ?? "",
-});
 byId("file").addEventListener("change", () => openFile(Number(byId("file").value), initial()));
 function showPanels(shown) {
   byId("side").classList.toggle("closed", !shown);
@@ -437,7 +400,7 @@ window.addEventListener("hashchange", () => {
 
 let resizeTimer = 0;
 new ResizeObserver(() => {
-  answer.draw(camera, aspect);
+  answer.draw();
   clearTimeout(resizeTimer);
   resizeTimer = setTimeout(() => {
     if (String(pixels()) !== String(shownSize)) ask(false);

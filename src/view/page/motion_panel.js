@@ -1,6 +1,7 @@
 // Beside the picture: what the machine does besides beads, the layer's height and time, and its moves with their lines.
 import { clock, linesOf } from "./answer.js";
 import { byId, checkbox, element, follow, swatch } from "./elements.js";
+import { withOrWithout } from "./state.js";
 import { KINDS } from "./move_table.js";
 
 export class MotionPanel {
@@ -8,17 +9,24 @@ export class MotionPanel {
   #asked = false; // for them
   #bead = -1; // whose line was asked for last
   #waits = false; // for its answer
-  #parts = { layer: 0, list: [] }; // beads of the layer, [first, end]
+  #listed = {}; // beads of the layer
 
-  /** own: the browser's own picture; send(message): to the server. The others as those of Controls. */
-  constructor({ state, changed, hold, own, send }) {
-    Object.assign(this, { state, changed, hold, own, send });
+  /** page: see main.js. */
+  constructor(page) {
+    this.page = page;
+    this.own = page.own;
     byId("also").replaceChildren(...[...KINDS, ["bed and grid of 10 mm", "#1973cc"]].map(([name, color]) =>
-      checkbox(name, (box) => this.toggle(name, box.checked), swatch(color), name, element("output"))));
+      checkbox(name, (on) => this.toggle(name, on), swatch(color), name, element("output"))));
     byId("layers-group").addEventListener("focusin", () => this.#askLayers());
     byId("layers-group").addEventListener("input", () => this.#askLayers());
     byId("moves-group").addEventListener("toggle", () => this.show());
     follow(byId("moves"), (move, moving) => this.#move(move, moving));
+    page.connection.on("layers", (layers) => {
+      this.#layers = layers;
+      this.show();
+    });
+    page.connection.on("program", (program) => this.#setProgram(program));
+    page.connection.on("refused", () => this.#setProgram(null)); // that may be what was asked for
   }
 
   /** The file was read, perhaps anew. */
@@ -27,62 +35,43 @@ export class MotionPanel {
     this.#layers = null;
     this.#asked = false;
     this.#bead = -1;
-    this.#parts = { layer: 0, list: [] };
+    this.#listed = {};
     byId("also").lastChild.hidden = !facts.print?.bed;
     this.show();
   }
   get planned() {
     return this.#layers?.seconds.reduce((sum, each) => sum + each, 0);
   }
-  setLayers(layers) {
-    this.#layers = layers;
-    this.show();
-  }
-  setProgram(program) {
+  #setProgram(program) {
     this.#waits = false;
     if (program) byId("program").replaceChildren(linesOf(program.lines, program.line));
     this.#follow();
   }
 
-  toggle(name, on = !this.state().also.includes(name)) {
-    this.state().also = this.state().also.filter((each) => each !== name).concat(on ? [name] : []);
-    this.changed(false);
+  toggle(name, on = !this.page.state.also.includes(name)) {
+    this.page.change({ also: withOrWithout(this.page.state.also, name, on) });
   }
 
   #askLayers() {
     if (this.#asked || !this.facts) return;
     this.#asked = true;
-    this.send({ type: "layers" });
+    this.page.connection.send({ type: "layers" });
   }
 
   get #layer() {
-    return this.state().layers[1] || this.facts?.layers || 0;
+    return this.page.state.layers[1] || this.facts?.layers || 0;
   }
-  /** Beads of the layer in front, as parts of all. */
-  #beads() {
+  /** Beads of the layer in front: its moves. */
+  get #beads() {
     const { table } = this.own;
     const layer = this.#layer;
     if (!table?.complete) return [];
-    if (this.#parts.layer !== layer || this.#parts.table !== table)
-      this.#parts = { layer, table, list: table.ofLayers(layer, layer).map((part) => part.map((texel) => table.beadOf(texel))) };
-    return this.#parts.list;
+    if (this.#listed.layer !== layer || this.#listed.table !== table) this.#listed = { layer, table, beads: table.ofLayers(layer, layer) };
+    return this.#listed.beads;
   }
-  get moveCount() {
-    return this.#beads().reduce((sum, [first, end]) => sum + end - first, 0);
-  }
-  /** The bead of a move, from 1. */
-  #beadOf(move) {
-    for (const [first, end] of this.#beads()) {
-      if (move <= end - first) return first + move - 1;
-      move -= end - first;
-    }
-    return -1;
-  }
-  /** The last move of the layer that is printed. */
+  /** The last move of the layer that is printed, from 1. */
   get move() {
-    const { beads } = this.state();
-    if (beads === null) return this.moveCount;
-    return this.#beads().reduce((sum, [first, end]) => sum + Math.max(0, Math.min(end, beads) - first), 0);
+    return this.#beads.filter((bead) => bead < (this.page.state.beads ?? Infinity)).length;
   }
   step(by) {
     byId("moves-group").open = true;
@@ -92,35 +81,30 @@ export class MotionPanel {
   /** What is printed up to a bead, with these lines of the program. */
   go(bead, lines) {
     byId("moves-group").open = true;
-    this.state().beads = bead + 1;
-    this.state().printed = 100;
     this.#bead = bead; // whose lines these are
     byId("program").replaceChildren(lines);
-    this.changed(false);
+    this.page.change({ beads: bead + 1, printed: 100 });
   }
 
   #move(move, moving) {
-    const count = this.moveCount;
-    if (!count) return;
-    move = Math.max(1, Math.min(count, move));
-    this.state().beads = move === count ? null : this.#beadOf(move) + 1;
-    this.state().printed = 100;
-    this.hold();
-    this.changed(moving);
+    const beads = this.#beads;
+    if (!beads.length) return;
+    move = Math.max(1, Math.min(beads.length, move));
+    this.page.select({ beads: move === beads.length ? null : beads[move - 1] + 1, printed: 100 }, moving);
   }
 
   // The newest line that is wanted; one answer at a time.
   #follow() {
-    const bead = this.#beadOf(Math.max(1, this.move));
-    if (this.#waits || bead < 0 || bead === this.#bead || !byId("moves-group").open) return;
+    const bead = this.#beads[Math.max(1, this.move) - 1];
+    if (this.#waits || bead === undefined || bead === this.#bead || !byId("moves-group").open) return;
     this.#bead = bead;
     this.#waits = true;
-    this.send({ type: "program", bead });
+    this.page.connection.send({ type: "program", bead });
   }
 
   /** The state in the panel. */
   show() {
-    const { also } = this.state();
+    const { also } = this.page.state;
     const needs = KINDS.some(([name]) => also.includes(name));
     const counts = needs ? this.own.counts() : null;
     [...byId("also").children].forEach((label, n) => {
@@ -134,7 +118,7 @@ export class MotionPanel {
     const layer = this.#layer;
     const times = this.#layers?.seconds;
     byId("layer-info").textContent = times && layer ? `Layer ${layer}: z ${this.#layers.z[layer].toFixed(2)} mm, takes ${clock(times[layer])}, done after ${clock(times.slice(0, layer + 1).reduce((a, b) => a + b, 0))}` : "";
-    const count = this.moveCount;
+    const count = this.#beads.length;
     byId("moves-group").hidden = !count;
     byId("moves").max = count;
     byId("moves").value = this.move;

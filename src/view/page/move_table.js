@@ -27,13 +27,12 @@ export class MoveTable {
     const { words, beads } = this;
     const part = new Uint32Array(bytes);
     words.set(part, 8 * this.got);
-    const last = beads.texels - beads.extras.length - 1;
     for (const end = this.got + part.length / 8; this.got < end; ++this.got) {
       const word = words[8 * this.got + 7];
       this.begins[this.got] = word >>> 31 ? 0 : 1;
       this.totals[(word >>> 28) & 7] += this.begins[this.got];
       // What leads to a bead is of its layer; what comes behind the last bead, of that one's.
-      const layer = beads.layerOf(beads.texelOf(Math.min(last, words[8 * this.got + 6])));
+      const layer = beads.layerOf(Math.min(beads.count - 1, words[8 * this.got + 6]));
       words[8 * this.got + 7] = (word & 0x70000000) | layer;
     }
   }

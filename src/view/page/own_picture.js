@@ -5,16 +5,9 @@ import { BED_TINTS, EXCLUDED_TINTS, bedLines } from "./bed.js";
 import { KINDS, MoveTable } from "./move_table.js";
 import { pixelRatio } from "./elements.js";
 import { Pace } from "./pace.js";
-import { cross, sub, unit } from "./camera.js";
-
-/** The camera of a state with an eye, as the server makes it. */
-export function cameraOf({ eye, look_at, fov }) {
-  const forward = unit(sub(look_at, eye));
-  const right = unit(cross(forward, [0, 0, 1]));
-  return { eye, forward, right, up: cross(right, forward), fov };
-}
 
 const ALL = 0xffffffff;
+const NOT_HERE = "the beads are not here yet";
 const STEP = 30; // ms of a picture at rest after which others may have their turn
 const tints = KINDS.map(([, hex]) => [1, 3, 5].map((n) => parseInt(hex.slice(n, n + 2), 16) / 255));
 
@@ -22,15 +15,17 @@ export class OwnPicture extends EventTarget {
   table = null;
   moves = null; // the MoveTable
   bed = null;
-  why = "the beads are not here yet"; // there is no own picture
+  why = NOT_HERE; // there is no own picture
+  #connection = null;
+  #generation; // of the input's file
+  #movesAsked = false;
   #renderer = null;
   #look = null;
   #colors = null;
   #values = [];
   #over = null; // see paintOver()
   #key = ""; // of the selection that the renderer has
-  #range = [0, 0]; // of its texels
-  #shown = null; // of the lines: layers, end
+  #shown = null; // of the moves: layers, end
   #counted = {};
   #frame = 0;
   #resting = null; // camera, state and size of a picture that is not complete yet
@@ -55,19 +50,34 @@ export class OwnPicture extends EventTarget {
 
   // ---------------------------------------------------------------- from the server
 
-  /** Takes from a connection what it draws. */
+  /** Asks a connection for what it draws, also when the server is back and when the file was written anew. */
   listen(connection) {
+    this.#connection = connection;
+    this.#generation = undefined;
+    this.refuse(NOT_HERE);
+    connection.on("hello", () => connection.send({ type: "beads" }));
+    connection.on("facts", ({ facts }) => {
+      if (![undefined, facts.generation].includes(this.#generation)) connection.send({ type: "beads" });
+      this.#generation = facts.generation;
+    });
     connection.on("beads", (head) => this.#begin(head));
     connection.on("bead-part", (part) => this.#add(part));
     connection.on("no-beads", ({ text }) => this.refuse(text));
     connection.on("colors", (colors) => this.#paint(colors));
     connection.on("moves", (head) => this.#beginMoves(head));
     connection.on("move-part", (part) => this.#addMoves(part));
+    connection.on("no-moves", () => (this.#movesAsked = false));
+  }
+  /** Another input was opened. */
+  open() {
+    if (!this.#connection) return;
+    this.#generation = undefined;
+    this.refuse(NOT_HERE);
+    this.#connection.send({ type: "beads" });
   }
   #begin(head) {
-    this.#stop("the beads are on their way");
+    this.refuse("the beads are on their way");
     this.table = new BeadTable(head, head.file);
-    this.moves = null;
     this.#look = this.#colors = this.#over = null;
   }
   #add({ generation, file }) {
@@ -78,6 +88,7 @@ export class OwnPicture extends EventTarget {
   /** There will be none. */
   refuse(why) {
     this.table = this.moves = null;
+    this.#movesAsked = false;
     this.#stop(why);
   }
   /** Of the program: travels and marks. */
@@ -107,10 +118,10 @@ export class OwnPicture extends EventTarget {
     if (!this.table) return;
     const places = new Uint16Array(file);
     this.#values = values;
-    this.#colors = places.length ? [this.table.byTexel(places), palette] : [null, null];
+    this.#colors = places.length ? [places, palette] : [null, null];
     if (!this.#over) this.#renderer?.paint(...this.#colors);
   }
-  /** Other colours for a while, as places by texel and a palette; null: its own again. */
+  /** Other colours for a while, as places by bead and a palette; null: its own again. */
   paintOver(colors) {
     this.#over = colors;
     this.#renderer?.paint(...(colors ?? this.#colors ?? [null, null]));
@@ -121,19 +132,18 @@ export class OwnPicture extends EventTarget {
     if (!this.ready || !this.#colors?.[0] || !(most > least)) return null;
     const parts = this.#values.map((value) => (value === null ? -1 : Math.max(0, Math.min(count - 1, Math.floor(((value - least) / (most - least)) * count)))));
     const sums = new Array(count).fill(0);
-    this.table.each(state, (texel, run) => {
-      const part = parts[this.#colors[0][texel]];
-      if (part >= 0) sums[part] += this.table.length(texel) / (by_time ? this.table.speeds[run] || Infinity : 1);
+    this.table.each(state, (bead, run) => {
+      const part = parts[this.#colors[0][bead]];
+      if (part >= 0) sums[part] += this.table.length(bead) / (by_time ? this.table.speeds[run] || Infinity : 1);
     });
     return sums;
   }
   /** Where the nozzle is if a part of the print is shown that ends within its layers; else null. */
   head(state) {
     if (!this.ready || (state.beads === null && state.printed >= 100)) return null;
-    const { table } = this;
-    const bead = table.beadOf(table.range(state)[1]) - 1;
+    const bead = this.table.end(state) - 1;
     if (bead < 0) return null;
-    const { layer, to } = table.describe(table.texelOf(bead));
+    const { layer, to } = this.table.describe(bead);
     return layer >= state.layers[0] && layer <= (state.layers[1] || Infinity) ? to : null;
   }
   illuminate(look) {
@@ -227,8 +237,10 @@ export class OwnPicture extends EventTarget {
   #selectLines(state, scale) {
     const { lines } = this.#renderer;
     const kinds = KINDS.reduce((bits, [name], n) => bits | (state.also.includes(name) ? 1 << n : 0), 0);
-    const end = this.#range[1] < this.table.texels ? this.table.beadOf(this.#range[1]) : ALL;
-    this.#shown = { layers: [state.layers[0] || 1, state.layers[1] || ALL >>> 4], end };
+    if (kinds && !this.#movesAsked) this.#connection.send({ type: "moves" }); // when they are first wanted
+    this.#movesAsked ||= kinds > 0;
+    const end = this.table.end(state);
+    this.#shown = { layers: [state.layers[0] || 1, state.layers[1] || ALL >>> 4], end: end < this.table.count ? end : ALL };
     if (lines.sets.has("moves")) lines.set("moves", { ...this.#shown, kinds, point: 7 * pixelRatio() * scale });
     const bed = { layers: [0, 0], end: ALL, kinds: state.also.some((name) => name.startsWith("bed")) ? 3 : 0, point: 0 };
     for (const name of ["bed", "excluded"]) if (lines.sets.has(name)) lines.set(name, bed);
@@ -248,15 +260,15 @@ export class OwnPicture extends EventTarget {
     this.#key = key;
     const { table } = this;
     const renderer = this.#renderer;
-    const range = (this.#range = table.range(state));
-    renderer.show(table.shown(state), range);
+    const end = table.end(state);
+    renderer.show(table.shown(state), end);
     // What is at the ends of the selection was hidden until now.
-    const last = range[1] < table.texels ? table.layerOf(Math.max(0, range[1] - 1)) : state.layers[1];
-    for (const [low, high] of [[last - 2, last], state.layers[0] ? [state.layers[0], state.layers[0] + 1] : [0, -1]])
-      for (const [first, end] of last || state.layers[0] ? table.ofLayers(low, high) : []) renderer.visible.expect(first, end);
+    const last = end < table.count ? table.layerOf(Math.max(0, end - 1)) : state.layers[1];
+    for (const [low, high] of [[last - 2, last], [state.layers[0], state.layers[0] + 1]])
+      if (high > 1) renderer.visible.expect(table.ofLayers(low, high));
   }
 
-  /** The texel that is seen at a place of the picture, from 0 to 1 and from the upper left corner; -1: none. */
+  /** The bead that is seen at a place of the picture, from 0 to 1 and from the upper left corner; -1: none. */
   at(x, y) {
     if (!this.ready || !this.#resting) return -1;
     const [width, height] = this.#renderer.size;

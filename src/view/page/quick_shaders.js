@@ -11,7 +11,7 @@ ${bead(kinds)}
 ${STAGE}
 ${COLORED}
 uniform vec2 size;          // pixels
-uniform usampler2D ends;    // the last texel that a bead stands for
+uniform usampler2D ends;    // the last bead that one stands for
 uniform float least;        // mm: half of how wide they are at least
 out vec3 edge;              // colours
 flat out vec3 middle;
@@ -24,18 +24,18 @@ void main() {
   gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
   uint n = chosen(uint(gl_VertexID) / ${4 * piecesOf(kinds)}u);
   id = n + 1u;
-  if (!isShown(n)) return;
+  uint shown_as = shownAs(n);
+  if (shown_as == 0u) return;
   Bead b = beadAt(n);
-  float begin = 0.0, end = 1.0;
+  vec2 shares = vec2(0.0, 1.0);
 #ifdef ARCS
   int piece = gl_VertexID >> 2 & 7;
   if (b.arc.z > 0.0) {
-    begin = float(piece) / 8.0;
-    end = begin + 0.125;
+    shares = (float(piece) + shares) / 8.0;
   } else if (piece > 0) return;
 #endif
-  vec3 from = pointOf(b, begin), to = pointOf(b, end);
-  uint last = min(row(ends, n).x, texels.y - 1u);
+  vec3 from = pointOf(b, shares.x), to = pointOf(b, shares.y);
+  uint last = min(row(ends, n).x, end - 1u);
   if (last > n) {
     uvec4 w = row(beads, last);
     to.xy = vec2(w.y & 65535u, w.y >> 16u) * grain.xy - eye.xy;
@@ -64,16 +64,16 @@ void main() {
   p += along * at.x * 0.8 * reach(b, half_flat, along) + side_way * at.y * drawn - view * reach(b, half_flat, view);
   float depth = dot(p, forward);
   gl_Position = vec4(dot(p, right) / slope.x, dot(p, up) / slope.y, 2.0 * ${NEAR} - depth, depth);
-  // Of its round sides one sees most above other layers, of its flats what is level.
+  // Of what lies side by side one sees the flats, of what lies on others the round sides, too.
   vec3 facing = cross(side_way, along_path);
   facing *= sign(-dot(facing, view) + 1e-9);
-  facing = normalize(vec3(b.radius * facing.xy, (0.3 * b.radius + half_flat) * facing.z));
+  facing = normalize(vec3(b.radius * facing.xy, (shown_as == 2u ? 6.0 : 0.5) * (0.3 * b.radius + half_flat) * facing.z));
   across = at.y;
   level = half_flat * length(side_way.xy) / wide;
-  vec3 body = bodyOf(n); // which the surroundings darken by about 0.85
-  middle = shadeOf(body, facing, view, 0.85 * openness(facing));
+  vec3 body = bodyOf(n); // which the surroundings darken by about 0.92
+  middle = shadeOf(body, facing, view, 0.92 * openness(facing));
   vec3 beside = normalize(at.y * side_way + 0.5 * facing);
-  edge = mix(middle, shadeOf(body, beside, view, 0.85 * openness(beside)), wide / drawn); // no grain of what is smaller than that
+  edge = mix(middle, shadeOf(body, beside, view, 0.92 * openness(beside)), wide / drawn); // no grain of what is smaller than that
 }`;
 export const quickFragments = `${HEAD}
 in vec3 edge;

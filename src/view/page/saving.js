@@ -1,43 +1,40 @@
 // The button that saves a finished picture: asks for it, tells how far it is, and hands the file to the browser.
-import { element } from "./elements.js";
+import { byId, element } from "./elements.js";
+import { toMessage } from "./state.js";
 
 export class Saving {
   #goesOn = false;
   #number = 0; // of its own, since the view that was asked for last stays that
 
-  /** ask(): the state of the picture as a message for the server; send, say as those of the page; name(): of the input. */
-  constructor(button, { ask, send, say, name }) {
-    Object.assign(this, { button, say, name });
-    button.addEventListener("click", () => {
-      if (this.#goesOn) {
-        send({ type: "cancel" });
-        this.#set(false);
-        return say("not saved");
-      }
-      this.#set(true);
-      say("saving …");
-      send({ type: "save", number: ++this.#number, state: ask() });
-    });
+  /** page: see main.js. */
+  constructor(page) {
+    this.page = page;
+    byId("save").addEventListener("click", () => this.#press());
+    const { connection } = page;
+    for (const type of ["hello", "failed"]) connection.on(type, () => this.#set(false)); // the server knows nothing of it any more
+    connection.on("saving", ({ done }) => this.#goesOn && page.say(`saving … ${Math.round(done * 100)} %`));
+    connection.on("picture", ({ kind, file }) => kind === "saved" && this.#take(file));
   }
 
+  #press() {
+    const { connection, say, state, pixels } = this.page;
+    this.#set(!this.#goesOn);
+    say(this.#goesOn ? "saving …" : "not saved");
+    if (!this.#goesOn) return connection.send({ type: "cancel" });
+    const chosen = byId("save-size").value;
+    connection.send({ type: "save", number: ++this.#number, state: toMessage(state, chosen ? chosen.split("x").map(Number) : pixels()) });
+  }
   #set(on) {
     this.#goesOn = on;
-    this.button.textContent = on ? "Cancel saving" : "Save picture";
+    byId("save").textContent = on ? "Cancel saving" : "Save picture";
   }
-  /** The server knows nothing of it any more. */
-  forget() {
-    this.#set(false);
-  }
-  progress({ done }) {
-    if (this.#goesOn) this.say(`saving … ${Math.round(done * 100)} %`);
-  }
-  take(blob) {
+  #take(blob) {
     this.#set(false);
     window.vdbviewSaved = blob;
-    const name = this.name().replace(/\.[^.]*$/, "") || "picture";
+    const name = byId("file").selectedOptions[0].text.replace(/\.[^.]*$/, "") || "picture";
     const link = element("a", { href: URL.createObjectURL(blob), download: `${name}.png` });
     link.click();
     setTimeout(() => URL.revokeObjectURL(link.href), 10000);
-    this.say("saved");
+    this.page.say("saved");
   }
 }

@@ -15,15 +15,15 @@ export class SecondPrint {
   #number = 0;
   #masks = null; // of what only one of the two has
 
-  /** url: of the socket; own: the first print's picture; state(); changed(): what is beside it has changed. */
-  constructor({ url, own, state, changed }) {
-    Object.assign(this, { url, own, state, changed });
+  /** page: see main.js. */
+  constructor(page) {
+    this.page = page;
     byId("second").addEventListener("change", () => this.#open());
     byId("differs").addEventListener("change", () => {
       this.#compare();
-      this.changed();
+      page.ask(false);
     });
-    own.addEventListener("changed", () => this.shown && this.#compare());
+    page.own.addEventListener("changed", () => this.shown && this.#compare());
   }
 
   get shown() {
@@ -48,35 +48,26 @@ export class SecondPrint {
     this.#asked = "";
     byId("stage").classList.toggle("two", file !== "");
     this.#say("");
-    this.own.paintOver(null);
-    if (file === "") return this.changed();
-    const connection = (this.#connection = new Connection(this.url));
+    this.page.own.paintOver(null);
+    if (file === "") return this.page.ask(false);
+    const connection = (this.#connection = new Connection(this.page.connection.url));
     if (!this.#own) {
       this.#own = new OwnPicture(byId("second-beads"));
       this.#own.addEventListener("changed", () => {
         if (!this.#own.ready) this.#asked = ""; // it has no light
         this.#compare();
-        this.changed();
+        this.page.ask(false);
       });
     }
     const own = this.#own;
-    own.refuse("the beads are not here yet");
+    connection.on("hello", () => connection.send({ type: "open", file: Number(file) }));
     own.listen(connection);
-    let generation;
-    connection.on("hello", () => {
-      connection.send({ type: "open", file: Number(file) });
-      connection.send({ type: "beads" });
-    });
-    connection.on("facts", ({ facts }) => {
-      if (generation !== undefined && generation !== facts.generation) connection.send({ type: "beads" });
-      generation = facts.generation;
-    });
     connection.on("no-beads", ({ text }) => this.#say(`It can't be shown here: ${text}.`));
     connection.on("look", (look) => own.illuminate(look));
     connection.on("loading", ({ step }) => own.ready || this.#say(`${step} …`));
     connection.on("failed", ({ text }) => this.#say(text));
     connection.on("picture", () => connection.send({ type: "shown" }));
-    this.changed();
+    this.page.ask(false);
   }
 
   #say(text) {
@@ -85,7 +76,7 @@ export class SecondPrint {
 
   // The colours of what only one of the two has.
   #compare() {
-    const [a, b] = [this.own, this.#own];
+    const [a, b] = [this.page.own, this.#own];
     if (!this.shown || !byId("differs").checked || !a.table?.complete || !b?.table?.complete) {
       a.paintOver(null);
       return b?.paintOver(null);
@@ -99,14 +90,14 @@ export class SecondPrint {
   /** Beside the first print, of the same state. */
   draw(camera, state, size, moving) {
     if (!this.shown) return;
-    // Numbers of beads, objects and tools are those of the first.
-    const its = { ...state, beads: null, objects: [], tools: [] };
+    // Numbers of beads, objects and tools are those of the first, and what is drawn besides beads.
+    const its = { ...state, beads: null, objects: [], tools: [], also: [] };
     this.#askLook(its);
     if (!this.#own.ready) return;
     this.#own.draw(camera, its, size, moving);
     if (!byId("differs").checked) this.#say("");
     else if (!moving && this.#masks) {
-      const [gone, fresh] = [amount(this.own.table, this.#masks.gone, state), amount(this.#own.table, this.#masks.fresh, its)];
+      const [gone, fresh] = [amount(this.page.own.table, this.#masks.gone, state), amount(this.#own.table, this.#masks.fresh, its)];
       const text = ({ beads, length }) => `${beads} ${beads === 1 ? "bead" : "beads"}, ${(length / 1000).toFixed(2)} m`;
       this.#say(`Red, gone: ${text(gone)}. Green, new: ${text(fresh)}.`);
     }

@@ -25,6 +25,9 @@ export const initial = () => ({
   also: [], // what the browser draws besides beads; the server knows nothing of it
 });
 
+/** A list of names with one of them at its end, or without it. */
+export const withOrWithout = (list, name, on) => list.filter((each) => each !== name).concat(on ? [name] : []);
+
 /** For the server: without what is left open. */
 export function toMessage(state, size) {
   const message = { ...state, size };

@@ -9,10 +9,10 @@ const FINE = { forget: 12, doubt: 2 };
 const COARSE = { forget: 4, doubt: 1 };
 
 export class VisibleBeads {
-  constructor(texels) {
-    this.texels = texels;
-    this.seenAt = new Uint16Array(texels); // number of the look + 1; 0: not in the list
-    this.list = new Uint32Array(Math.min(texels, 4096));
+  constructor(beads) {
+    this.all = beads;
+    this.seenAt = new Uint32Array(beads); // number of the look + 1; 0: not in the list
+    this.list = new Uint32Array(Math.min(beads, 4096));
     this.count = 0;
     this.changedFrom = 0; // the list's texture is right up to here
     this.look = FINE.forget + 1;
@@ -22,24 +22,24 @@ export class VisibleBeads {
 
   /** Another picture: nothing of it is drawn yet. */
   restart() {
-    this.partsLeft = Math.ceil(this.texels / PART);
+    this.drawn = 0;
   }
-  #next = 0;
 
-  /** The next part of all beads, [first, count], or null if all are in the picture. */
+  get complete() {
+    return this.drawn >= this.all;
+  }
+  /** The next part of all beads, [first, count]. */
   part() {
-    if (this.partsLeft === 0) return null;
-    --this.partsLeft;
-    const first = this.#next * PART >= this.texels ? 0 : this.#next * PART;
-    this.#next = first / PART + 1;
-    return [first, Math.min(PART, this.texels - first)];
+    const first = this.drawn;
+    this.drawn += PART;
+    return [first, Math.min(PART, this.all - first)];
   }
 
   #sought = 0;
 
   /** The next `most` beads of a round through all, or through all coarse ones, [first, count]. */
   sought(most) {
-    const all = this.coarse ? this.coarse.texels.length : this.texels;
+    const all = this.coarse ? this.coarse.beads.length : this.all;
     const first = this.#sought >= all ? 0 : this.#sought;
     this.#sought = first + most;
     return [first, Math.min(most, all - first)];
@@ -57,18 +57,18 @@ export class VisibleBeads {
   get #looks() {
     return this.coarse ? COARSE : FINE;
   }
-  /** Beads that may be seen next, by texel. */
-  expect(first, end) {
+  /** Beads that may be seen next. */
+  expect(beads) {
     const { forget, doubt } = this.#looks;
-    for (let n = first; n < end; ++n) if (this.seenAt[n] === 0) this.#add(n, this.look - forget + doubt);
+    for (const n of beads) if (this.seenAt[n] === 0) this.#add(n, this.look - forget + doubt);
   }
 
-  #add(texel, look) {
-    const n = this.coarse ? this.coarse.ofTexel[texel] : texel;
+  #add(bead, look) {
+    const n = this.coarse ? this.coarse.ofBead[bead] : bead;
     if (n === 0xffffffff) return;
     if (this.seenAt[n] === 0) {
       if (this.count === this.list.length) {
-        const longer = new Uint32Array(Math.min(this.texels, 2 * this.list.length));
+        const longer = new Uint32Array(Math.min(this.all, 2 * this.list.length));
         longer.set(this.list);
         this.list = longer;
       }
@@ -77,7 +77,7 @@ export class VisibleBeads {
     this.seenAt[n] = Math.max(this.seenAt[n], look);
   }
 
-  /** The pixels of a picture: texel + 1, or 0. */
+  /** The pixels of a picture: bead + 1, or 0. */
   seen(ids) {
     let last = 0;
     for (let n = 0; n < ids.length; ++n) {
@@ -90,14 +90,11 @@ export class VisibleBeads {
     if (++this.look % doubt !== 0) return;
     let kept = 0;
     for (let n = 0; n < this.count; ++n) {
-      const texel = this.list[n];
-      if (this.look - this.seenAt[texel] < forget) this.list[kept++] = texel;
-      else this.seenAt[texel] = 0;
+      const bead = this.list[n];
+      if (this.look - this.seenAt[bead] < forget) this.list[kept++] = bead;
+      else this.seenAt[bead] = 0;
     }
     this.count = kept;
     this.changedFrom = 0;
-    if (this.look < 65000) return;
-    for (let n = 0; n < kept; ++n) this.seenAt[this.list[n]] = FINE.forget;
-    this.look = FINE.forget + 1;
   }
 }

@@ -34,7 +34,7 @@ TEST(BeadStream, SendsTheTableInParts) {
     EXPECT_EQ(page.bytes.front().second, 20 * head["runs"].get<std::size_t>());
     std::size_t size = 0;
     for (std::size_t n = 1; n < page.bytes.size(); ++n) size += page.bytes[n].second;
-    EXPECT_EQ(size, 16 * head["texels"].get<std::size_t>());
+    EXPECT_EQ(size, 16 * head["beads"].get<std::size_t>());
 }
 
 TEST(BeadStream, SaysWhyItHasNone) {
