@@ -239,9 +239,7 @@ void refuseEqualNames(const tools::ConvertCommand& o, const std::vector<fs::path
 // One element a layer, if nobody chooses: a solver takes millions of elements, not billions.
 void chooseElementSize(tools::ConvertCommand& o, const fs::path& output) {
     voxelize::PrintOptions& print = o.print;
-    const bool chosen =
-        print.lattice.voxel_size || print.lattice.voxels_per_layer || print.tolerance || !print.memory_budget.empty();
-    if (tools::isElementsPath(output) && !chosen) print.lattice.voxels_per_layer = 1;
+    if (tools::isElementsPath(output) && !voxelize::choosesVoxels(print)) print.lattice.voxels_per_layer = 1;
 }
 
 void run(tools::ConvertCommand& o) {

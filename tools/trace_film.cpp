@@ -58,8 +58,6 @@ void refuseOthers(const TraceCommand& o) {
     if (!o.write_brdf.empty()) refuse("--write-brdf", "is for pictures");
     if (o.scene.transparent) refuse("--background none", "is for pictures; films have no alpha");
     if (!o.film.camera_path.empty() && o.film.turn) refuse("--camera-path", "and --turntable move the same camera");
-    if (o.prints.print.voxel_auto && !o.film.camera_path.empty())
-        refuse("--voxel-size auto", "follows from one camera, and that of --camera-path moves; give a number");
     if (!o.shard.by.empty() && o.shard.by != "frames") refuse("--shard-by", "frames is the only way to divide a film");
 }
 
@@ -133,9 +131,8 @@ private:
         const assemble::StageOptions options = stageOptionsOf(o_);
         const int turns = film.turn ? static_cast<int>(film.frames) : 1;
         reading.prints.pixel_spread = [&](const voxelize::Bounds& print, const voxelize::Bounds& part,
-                                          std::span<const glm::dvec3> outline) {
-            if (!o_.objects.empty())
-                throw UsageError("--voxel-size auto is of a print that stands alone; give a number");
+                                          std::span<const glm::dvec3> outline) -> std::optional<shade::PixelSpread> {
+            if (!o_.objects.empty() || !film.keys.empty()) return std::nullopt;
             return assemble::pixelSpreadOf(options, print, part, outline, nullptr, turns);
         };
         assemble::TracedObjects objects = assemble::readTracedObjects(objectsOf(o_, 0), reading);

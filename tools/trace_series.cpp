@@ -106,9 +106,9 @@ public:
     const Json& reports() const { return reports_; }
 
 private:
-    shade::PixelSpread spread(const voxelize::Bounds& print, const voxelize::Bounds& part,
-                              std::span<const glm::dvec3> outline) const {
-        if (!o_.objects.empty()) throw UsageError("--voxel-size auto is of a print that stands alone; give a number");
+    std::optional<shade::PixelSpread> spread(const voxelize::Bounds& print, const voxelize::Bounds& part,
+                                             std::span<const glm::dvec3> outline) const {
+        if (!o_.objects.empty()) return std::nullopt;
         return assemble::pixelSpreadOf(stageOptionsOf(o_), print, part, outline, scene_ ? &scene_->camera : nullptr,
                                        o_.turntable);
     }

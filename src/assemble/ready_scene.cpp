@@ -53,9 +53,8 @@ ReadyScene readyScene(const std::vector<ObjectOptions>& objects, const PictureOp
     TracingOptions tracing = tracingFor(options.scene, options.render, options.tracing);
     if (!tracing.prints.pixel_spread)
         tracing.prints.pixel_spread = [&](const voxelize::Bounds& print, const voxelize::Bounds& part,
-                                          std::span<const glm::dvec3> outline) {
-            if (objects.size() != 1 || !objects.front().placement.isIdentity())
-                throw UsageError("--voxel-size auto is of a print that stands alone; give a number");
+                                          std::span<const glm::dvec3> outline) -> std::optional<shade::PixelSpread> {
+            if (objects.size() != 1 || !objects.front().placement.isIdentity()) return std::nullopt;
             return pixelSpreadOf(options, print, part, outline);
         };
     TracedObjects read = readTracedObjects(objects, tracing);

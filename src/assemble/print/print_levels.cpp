@@ -223,16 +223,21 @@ private:
     }
 
     void chooseLattice() {
+        const bool by_itself = !voxelize::choosesVoxels(request_.print);
+        std::optional<shade::PixelSpread> spread;
+        // Prints that are kept for other pictures do not follow one camera.
+        if (request_.pixel_spread && (request_.print.voxel_auto || (by_itself && request_.kept == nullptr)))
+            spread = request_.pixel_spread(toolpath_->belt_angle == 0
+                                               ? bounds_
+                                               : voxelize::boundsOf(*toolpath_, selection_, toolpath_->belt_angle),
+                                           result_.part, result_.outline);
         if (request_.print.voxel_auto) {
-            if (!request_.pixel_spread)
-                throw UsageError("--voxel-size auto: nothing says what a pixel spans; give a number");
-            pixels_ = request_.pixel_spread(toolpath_->belt_angle == 0
-                                                ? bounds_
-                                                : voxelize::boundsOf(*toolpath_, selection_, toolpath_->belt_angle),
-                                            result_.part, result_.outline);
+            if (!spread)
+                throw UsageError("--voxel-size auto: is of a print that stands alone before one camera; give a number");
+            pixels_ = *spread;
         }
         lattice_ = voxelize::latticeFor(request_.print, *toolpath_, selection_, bounds_, voxelize::Interior::keep,
-                                        pixels_.smallest);
+                                        spread ? spread->smallest : 0);
         if (!lattice_.warning.empty())
             warnings_.add(Warning::Kind::voxel_size, fmt::format("{}: {}", path_, lattice_.warning));
         constexpr double kLeastHalfWidth = 2;

@@ -90,11 +90,6 @@ std::string encoded(const gcode::ThumbnailSize& size, const Pixels& rgba) {
     return textOf(shade::encodePng(size.width, size.height, rgba, {}));
 }
 
-bool choosesVoxels(const voxelize::PrintOptions& print) {
-    return print.lattice.voxel_size || print.lattice.voxels_per_layer || print.tolerance ||
-           !print.memory_budget.empty();
-}
-
 }  // namespace
 
 std::vector<gcode::Thumbnail> makeThumbnails(const std::shared_ptr<const gcode::Toolpath>& toolpath,
@@ -108,7 +103,7 @@ std::vector<gcode::Thumbnail> makeThumbnails(const std::shared_ptr<const gcode::
     TracingOptions tracing;
     tracing.events = options.events;
     tracing.prints.print = options.print;
-    tracing.prints.print.voxel_auto = !choosesVoxels(options.print);
+    tracing.prints.print.voxel_auto = !voxelize::choosesVoxels(options.print);
     tracing.prints.toolpath = options.print.features.empty() ? withoutWhatIsBeside(toolpath) : toolpath;
     tracing.prints.pixel_spread = [&](const voxelize::Bounds& print, const voxelize::Bounds& part,
                                       std::span<const glm::dvec3> outline) {

@@ -21,6 +21,9 @@ namespace {
 // voxels a layer show layer lines well; with two they begin to look cut.
 constexpr int kFinestVoxelsPerLayer = 4;
 constexpr int kCoarsestVoxelsPerLayer = 2;
+// For pictures whose voxels would be longer.
+constexpr double kPixelsPerVoxel = 2;
+constexpr int kFinestForPixels = 8;
 constexpr double kComfortableActiveVoxels = 60e6;
 // Share of the available memory for the estimate of a grid of default size. The estimate can be off by a factor of two
 // or three.
@@ -81,9 +84,17 @@ void chooseByItself(const gcode::Toolpath& toolpath, std::span<const std::uint32
         short_of_memory = voxelsAt(count) <= kComfortableActiveVoxels;
         --count;
     }
+    // Pictures: bricks are made where rays come to, so finer voxels cost little.
+    const bool facets = count == kFinestVoxelsPerLayer && request.pixel > 0 &&
+                        lattice.layer_height / count > kPixelsPerVoxel * request.pixel;
+    if (facets) {
+        const double least = std::ceil(lattice.layer_height / (kPixelsPerVoxel * request.pixel));
+        count = static_cast<int>(std::min<double>(least, kFinestForPixels));
+    }
     lattice.voxel_size = lattice.layer_height / count;
     lattice.reason = fmt::format("chosen: {} voxels a layer of {:g} mm, about {:.0f} M active", count,
                                  lattice.layer_height, voxelsAt(count) * 1e-6);
+    if (facets) lattice.reason += fmt::format("; a pixel spans {:.3g} mm", request.pixel);
     if (short_of_memory)
         lattice.reason += fmt::format("; {} would take about {:.2g} GB of the {:.2g} GB that are free", count + 1,
                                       voxelsAt(count + 1) * kBytesPerActiveVoxel * 1e-9, memory * 1e-9);

@@ -22,6 +22,7 @@ struct LatticeRequest {
     std::optional<double> voxel_size;     ///< mm
     std::optional<int> voxels_per_layer;  ///< 1..64
     double half_width = 3;                ///< voxels, 1..10; OpenVDB's tools expect 3
+    double pixel = 0;                     ///< mm that a pixel of the picture spans at least; 0: not known
     std::size_t memory = 0;               ///< bytes that a grid of the default size may take; 0: availableMemory()
 };
 
@@ -41,8 +42,9 @@ struct Lattice {
 };
 
 /// Chooses the lattice for the beads of `selection`, whose solid has the box `bounds`. Without a request: the finest of
-/// four, three and two voxels a layer that stays below about 60 million active voxels and half of the memory. Throws
-/// UsageError for sizes that are not positive numbers, larger than the part, or too fine to index.
+/// four, three and two voxels a layer that stays below about 60 million active voxels and half of the memory; up to
+/// eight instead of four if a voxel would be longer than two pixels, so that small prints and close views don't look
+/// faceted. Throws UsageError for sizes that are not positive numbers, larger than the part, or too fine to index.
 Lattice chooseLattice(const gcode::Toolpath& toolpath, std::span<const std::uint32_t> selection, const Bounds& bounds,
                       const LatticeRequest& request);
 

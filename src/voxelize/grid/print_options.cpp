@@ -9,6 +9,11 @@
 
 namespace stratum::voxelize {
 
+bool choosesVoxels(const PrintOptions& options) {
+    return options.lattice.voxel_size || options.lattice.voxels_per_layer || options.tolerance ||
+           !options.memory_budget.empty();
+}
+
 Selection selectionOf(const PrintOptions& options, const gcode::Toolpath& toolpath) {
     Selection selection;
     if (!options.layers.empty()) parseLayers(options.layers, selection);
@@ -33,6 +38,7 @@ std::string describeSelection(const PrintOptions& options) {
 Lattice latticeFor(const PrintOptions& options, const gcode::Toolpath& toolpath,
                    const std::vector<std::uint32_t>& selection, const Bounds& bounds, Interior interior, double pixel) {
     LatticeRequest request = options.lattice;
+    request.pixel = pixel;
     std::string why;
     if (options.voxel_auto || options.tolerance || !options.memory_budget.empty()) {
         request.voxels_per_layer = kFewestVoxelsPerLayer;

@@ -30,6 +30,9 @@ struct PrintOptions {
     std::vector<std::uint8_t> tools;   ///< T numbers; empty: all
 };
 
+/// Whether something says how large voxels are, but for voxel_auto.
+bool choosesVoxels(const PrintOptions& options);
+
 /// The beads of a print that the lists of layers, features and objects select. Throws UsageError or InputError.
 Selection selectionOf(const PrintOptions& options, const gcode::Toolpath& toolpath);
 
@@ -37,8 +40,8 @@ Selection selectionOf(const PrintOptions& options, const gcode::Toolpath& toolpa
 std::string describeSelection(const PrintOptions& options);
 
 /// The lattice: tolerance and memory_budget determine the voxels a layer, and with voxel_auto so does `pixel`, the
-/// smallest size of a pixel on the print (mm); otherwise chooseLattice() decides. For requests of fewer than two voxels
-/// a layer, its warning has the share of the beads that is lost. Throws UsageError.
+/// smallest size of a pixel on the print (mm; 0: not known); otherwise chooseLattice() decides, which is told it. For
+/// requests of fewer than two voxels a layer, its warning has the share of the beads that is lost. Throws UsageError.
 Lattice latticeFor(const PrintOptions& options, const gcode::Toolpath& toolpath,
                    const std::vector<std::uint32_t>& selection, const Bounds& bounds, Interior interior,
                    double pixel = 0);

@@ -52,7 +52,7 @@ static_assert(kTileCells % kSumCells == 0);
 /// Layers of a tile: as many of LayerStack::layers, from a multiple of it on.
 constexpr std::uint32_t kTileLayers = 32;
 /// As many layers above the one where it was laid plastic may find a place, by their index too.
-constexpr std::uint32_t kUpLayers = 4;
+constexpr std::uint32_t kUpLayers = 8;
 static_assert(kUpLayers <= kTileLayers);
 constexpr int kNear = 2;  ///< cells: about two widths of a line
 constexpr int kUp = 1;    ///< cells

@@ -53,6 +53,25 @@ TEST(PrintLevels, ANearEyeSeesFarBeadsCoarser) {
     EXPECT_THROW((void)read(request), UsageError);
 }
 
+TEST(PrintLevels, VoxelsThatNobodyChoseFollowShortPixels) {
+    PrintRequest request = coarse();
+    request.print.lattice.voxel_size.reset();
+    const auto voxelsAt = [&request](std::optional<double> pixel) {
+        request.pixel_spread = [pixel](const voxelize::Bounds&, const voxelize::Bounds&, std::span<const glm::dvec3>) {
+            return pixel ? std::optional<shade::PixelSpread>({.smallest = *pixel}) : std::nullopt;
+        };
+        const PrintLevels print = read(request);
+        EXPECT_EQ(print.levels.size(), 1U);
+        const voxelize::Lattice& lattice = print.levels.front().field->layout().lattice;
+        return std::lround(lattice.layer_height / lattice.voxel_size);
+    };
+    EXPECT_EQ(voxelsAt(0.001), 8);
+    EXPECT_EQ(voxelsAt(1), 4);
+    EXPECT_EQ(voxelsAt(std::nullopt), 4);
+    request.print.lattice.voxels_per_layer = 3;
+    EXPECT_EQ(voxelsAt(0.001), 3);
+}
+
 TEST(PrintLevels, MomentsGrowToTheWholePrint) {
     PrintRequest request = coarse();
     request.series = 4;

@@ -57,6 +57,21 @@ TEST(Lattice, ChoosesByItselfBetweenTwoAndFourVoxelsALayer) {
     EXPECT_DOUBLE_EQ(large.voxel_size, 0.1);
 }
 
+TEST(Lattice, ShortPixelsHaveMoreVoxels) {
+    const auto sizeAt = [](double pixel, int layers = 10) {
+        LatticeRequest request;
+        request.pixel = pixel;
+        return choose(stack(0.2, 0.2, layers), request).voxel_size;
+    };
+    EXPECT_DOUBLE_EQ(sizeAt(0.025), 0.05) << "a voxel spans two pixels";
+    EXPECT_DOUBLE_EQ(sizeAt(0.021), 0.04) << "no more than two";
+    EXPECT_DOUBLE_EQ(sizeAt(0.001), 0.025) << "eight a layer at most";
+    EXPECT_DOUBLE_EQ(sizeAt(0.001, 200000), 0.1) << "a print too large for four keeps fewer";
+    LatticeRequest asked = voxel(0.1);
+    asked.pixel = 0.001;
+    EXPECT_DOUBLE_EQ(choose(stack(0.2, 0.2, 10), asked).voxel_size, 0.1);
+}
+
 TEST(Lattice, ChoosesWhatTheMemoryHolds) {
     const auto print = stack(0.2, 0.2, 2000);
     LatticeRequest request;
