@@ -15,7 +15,7 @@ struct SumsAround {
     static constexpr int kCount = kEdge * kEdge;
     std::array<const TileSums*, kCount> tiles{};
 
-    const TileSums& at(int x, int y) const { return *tiles[static_cast<std::size_t>(y * kEdge + x)]; }
+    const TileSums& at(int x, int y) const { return *tiles[nodeIndex(y, kEdge, x)]; }
 };
 
 /// Spreads the surplus of a tile's layers. `below`: the sums around the tile below, or null if there is none.
