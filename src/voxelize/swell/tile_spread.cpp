@@ -113,8 +113,7 @@ private:
                 double below = 0;
                 if (!volumes.empty())
                     for (const double volume : volumes[at]) below += volume;
-                const double all = std::max(static_cast<double>(spread.left[n]) + below, 0.0);
-                double moves_up = all;
+                double moves_up = std::max(static_cast<double>(spread.left[n]) + below, 0.0);
                 const auto open = static_cast<double>(nodes.open[n]);
                 const bool crowned = open > 0 && of.crown > 0;
                 if (!(moves_up > 0 || spread.given[n] > 0 || spread.raised[n] > 0 || crowned)) continue;

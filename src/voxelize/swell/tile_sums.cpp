@@ -42,6 +42,11 @@ ColumnGrid pointsOfSquare() {
     return points;
 }
 
+// Of the top of a layer with a crown.
+struct TopFields {
+    PlanField sides2, nearest;
+};
+
 // What a column's layers hold and gain, added to the nodes of its square.
 class ColumnSums {
 public:
@@ -76,10 +81,10 @@ public:
     }
 
     // The area of a top, with `solid` points of which `open` have nothing on them. Of one with a crown, also that of
-    // its plastic, and what the crown takes is left over. `nearest`, `sides2`: used only then.
-    void addTop(const Layer& layer, std::uint64_t solid, std::uint64_t open, const PlanField& nearest,
-                const PlanField& sides2, int first_node, WholeLayer& sums) const {
-        const bool crowned = layer.crown > 0;
+    // its plastic, and what the crown takes is left over. `crown`: null without one.
+    void addTop(const Layer& layer, std::uint64_t solid, std::uint64_t open, const TopFields* crown, int first_node,
+                WholeLayer& sums) const {
+        const bool crowned = crown != nullptr;
         if (!crowned && open == 0) return;
         sums.any_open |= open != 0;
         sums.any_solid |= crowned;
@@ -97,7 +102,7 @@ public:
         ones(open, fields[0]);
         ones(crowned ? solid : 0, fields[1]);
         if (crowned && open != 0)
-            crownTakes(layer, nearest, sides2, fields[0], fields[2]);
+            crownTakes(layer, *crown, fields[0], fields[2]);
         else
             fields[2] = {};
         const NodeSums::Sums by_node = nodes_.of(fields);
@@ -137,15 +142,14 @@ private:
     }
 
     // `open`: 1 where the top is.
-    static void crownTakes(const Layer& layer, const PlanField& nearest, const PlanField& sides2, const PlanField& open,
-                           PlanField& taken) {
+    static void crownTakes(const Layer& layer, const TopFields& top, const PlanField& open, PlanField& taken) {
         const auto crown = static_cast<float>(layer.crown);
         const auto radius = static_cast<float>(layer.radius);
         const auto straight = static_cast<float>(layer.half_side);
         for (std::size_t c = 0; c < kColumnSamples; ++c) {
-            const float above = straight + std::sqrt(std::max(radius * radius - sides2.v[c], 0.0F));
+            const float above = straight + std::sqrt(std::max(radius * radius - top.sides2.v[c], 0.0F));
             // The upper half loses no more than half of it: see PlaneTerm::rise.
-            taken.v[c] = open.v[c] * std::min(crownDepth(crown, radius, nearest.v[c]), 0.5F * above);
+            taken.v[c] = open.v[c] * std::min(crownDepth(crown, radius, top.nearest.v[c]), 0.5F * above);
         }
     }
 
@@ -338,7 +342,7 @@ public:
     }
     // Of a column's ranks those of the tile's own layers; ranks ascend with their layers.
     std::span<const std::uint32_t> ownOf(std::span<const std::uint32_t> ranks) const {
-        const auto from = std::lower_bound(ranks.begin(), ranks.end(), firstRank());
+        const auto from = std::lower_bound(ranks.begin(), ranks.end(), stack_.layers[first_].first);
         auto to = from;
         while (to != ranks.end() && *to < stack_.layers[last_ - 1].last) ++to;
         return {from, to};
@@ -353,19 +357,11 @@ public:
         while (last < ranks.size() && ranks[last] < stack_.layers[others_.back()].last) ++last;
         return ranks.subspan(first, last - first);
     }
-    // The first rank of the tile's own beads, and how many there are in all of the plan.
-    std::uint32_t firstRank() const { return stack_.layers[first_].first; }
-    std::uint32_t rankCount() const { return stack_.layers[last_ - 1].last - firstRank(); }
 
 private:
     const LayerStack& stack_;
     const std::span<const std::uint32_t> others_;
     const std::uint32_t first_, last_;
-};
-
-// Of the top of a layer with a crown.
-struct TopFields {
-    PlanField sides2, nearest;
 };
 
 }  // namespace
@@ -391,7 +387,7 @@ TileSums sumTile(const gcode::Toolpath& toolpath, const LayerStack& stack, const
         return sums;
     };
     for (WholeLayer& sums : whole) sums.used = false;
-    std::vector<bool> feeds(own.rankCount());  // by rank from firstRank() on: whether the bead is near
+    std::vector<std::uint32_t> feeds;  // ranks of the tile's own beads
     std::vector<OpenTop> tops;
     std::vector<TopFields> fields;  // of tops, where they have crowns
     PlanField highest;
@@ -401,7 +397,7 @@ TileSums sumTile(const gcode::Toolpath& toolpath, const LayerStack& stack, const
             if (bin == PlanBins::kNone) continue;
             const std::span<const std::uint32_t> near = own.ownOf(bins[bin]);
             if (near.empty()) continue;
-            for (const std::uint32_t rank : near) feeds[rank - own.firstRank()] = true;
+            feeds.insert(feeds.end(), near.begin(), near.end());
             column.open(bins.originI(bin), bins.originJ(bin), own.neededOf(bins[bin], near),
                         std::numeric_limits<std::uint32_t>::max());
             const int first_node = kSquareCells * (cj * kNodes + ci);
@@ -421,19 +417,18 @@ TileSums sumTile(const gcode::Toolpath& toolpath, const LayerStack& stack, const
                 fields[tops.size() - 1] = {sides2, nearest};
             });
             coverTops(stack, tops);
-            fields.resize(std::max(fields.size(), tops.size()));
             for (std::size_t n = 0; n < tops.size(); ++n) {
                 const OpenTop& top = tops[n];
                 if (!own.owns(top.layer)) continue;
-                kSums.addTop(stack.layers[top.layer], top.solid, top.open, fields[n].nearest, fields[n].sides2,
-                             first_node, sumsOf(top.layer));
+                const Layer& of = stack.layers[top.layer];
+                kSums.addTop(of, top.solid, top.open, of.crown > 0 ? &fields[n] : nullptr, first_node,
+                             sumsOf(top.layer));
             }
         }
     const Feeder feeder(toolpath, stack, place);
-    for (std::uint32_t n = 0; n < feeds.size(); ++n) {
-        const std::uint32_t rank = own.firstRank() + n;
-        if (feeds[n]) feeder.feed(rank, sumsOf(stack.layer[rank]));
-    }
+    std::sort(feeds.begin(), feeds.end());
+    feeds.erase(std::unique(feeds.begin(), feeds.end()), feeds.end());
+    for (const std::uint32_t rank : feeds) feeder.feed(rank, sumsOf(stack.layer[rank]));
     TileSums tile;
     for (std::size_t n = 0; n < whole.size(); ++n)
         if (whole[n].used) tile.layers[n] = keep(whole[n]);
