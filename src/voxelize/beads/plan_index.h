@@ -7,6 +7,9 @@
 
 namespace stratum::voxelize {
 
+/// Rounded down: the square of edge b in which a lies.
+constexpr int floorDivide(int a, int b) { return a / b - (a % b < 0 ? 1 : 0); }
+
 /// A hash table of places (x, y). Memory is in proportion to the squares that were added.
 class PlanIndex {
 public:

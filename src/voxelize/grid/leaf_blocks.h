@@ -17,8 +17,6 @@ namespace stratum::voxelize {
 constexpr int kSlabLeaves = kSlabVoxels / kLeafDim;  ///< along each axis of an upper node
 constexpr int kBlockLeaves = kBlockVoxels / kLeafDim;
 
-inline int floorDivide(int a, int b) { return a / b - (a % b < 0 ? 1 : 0); }
-
 /// The cells of a lattice of this edge that an interval meets.
 inline std::size_t cellsMet(int first, int last, int edge) {
     return static_cast<std::size_t>(floorDivide(last, edge)) - static_cast<std::size_t>(floorDivide(first, edge)) + 1;

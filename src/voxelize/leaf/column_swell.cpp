@@ -31,9 +31,8 @@ void LeafColumn::findSwellTiles(std::uint32_t z) {
     swell_sources_.clear();
     const int last_i = first_node_i_ + nodes_i_ - 1;
     const int last_j = first_node_j_ + nodes_j_ - 1;
-    const auto tileOf = [](int node) { return (node >= 0 ? node : node - kTileCells + 1) / kTileCells; };
-    for (int y = tileOf(first_node_j_); y <= tileOf(last_j); ++y)
-        for (int x = tileOf(first_node_i_); x <= tileOf(last_i); ++x) {
+    for (int y = floorDivide(first_node_j_, kTileCells); y <= floorDivide(last_j, kTileCells); ++y)
+        for (int x = floorDivide(first_node_i_, kTileCells); x <= floorDivide(last_i, kTileCells); ++x) {
             const SwellTile* tile = stack_.swell->tile(toolpath_, stack_, {x, y, z});
             if (tile == nullptr) continue;
             swell_sources_.push_back(

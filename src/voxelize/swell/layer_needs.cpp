@@ -35,7 +35,7 @@ LayerNeeds::LayerNeeds(const LayerStack& stack) : takes_(stack.layers.size()), g
     for (const Weld& weld : stack.welds)
         if (weld.lower / kTileLayers != weld.upper / kTileLayers)
             others.emplace_back(weld.lower / kTileLayers, weld.upper);
-    const std::uint32_t tiles = (count + kTileLayers - 1) / kTileLayers;
+    const std::uint32_t tiles = tilesHigh(stack);
     for (std::uint32_t z = 0; any_overlap_ && z < tiles; ++z) {
         double lowest = std::numeric_limits<double>::max();
         for (std::uint32_t n = z * kTileLayers; n < std::min((z + 1) * kTileLayers, count); ++n)

@@ -13,12 +13,6 @@
 #include <vector>
 
 namespace stratum::voxelize {
-namespace {
-
-int floorTo(int value, int step) { return (value >= 0 ? value : value - step + 1) / step; }
-
-}  // namespace
-
 NodeValues::NodeValues(const std::vector<std::uint32_t>& layers, const std::vector<float>& values)
     : values_(values.size()) {
     static_assert(kTileCells % kBlock == 0);
@@ -50,7 +44,7 @@ void SwellField::list(const gcode::Toolpath& toolpath, const LayerStack& stack) 
                 for (int x = block.x * edge - more; x < (block.x + 1) * edge + more; ++x) tiles.add(x, y);
         tiles.finish(high_);
     };
-    high_ = static_cast<std::uint32_t>((stack.layers.size() + kTileLayers - 1) / kTileLayers);
+    high_ = tilesHigh(stack);
     add(tiles_, kTileCells, 1);
     add(sums_, kSumCells, 0);
 }
@@ -106,9 +100,10 @@ SwellTile SwellField::spread(const LayerStack& stack, TilePlace place, const All
 }
 
 void SwellField::letGo(const AllNeeded& needed) const {
-    // The last tile that needs the sums of another lets go of them. The tiles that a halo away are others are those.
-    const auto first = [](int at) { return floorTo((at - 1) * kSumCells, kTileCells); };
-    const auto last = [](int at) { return floorTo((at + 1) * kSumCells, kTileCells); };
+    // The last tile that needs the sums of another lets go of them. It needs those that it covers, and those next to
+    // it.
+    const auto first = [](int at) { return floorDivide((at - 1) * kSumCells, kTileCells); };
+    const auto last = [](int at) { return floorDivide((at + 1) * kSumCells, kTileCells); };
     for (const Needed& other : needed) {
         if (other.tile == nullptr) continue;
         int users = 0;
@@ -129,7 +124,7 @@ Swell SwellField::at(const gcode::Toolpath& toolpath, const LayerStack& stack, s
     for (int n = 0; n < 4; ++n) {
         const int node_i = i + n % 2;
         const int node_j = j + n / 2;
-        const TilePlace place{floorTo(node_i, kTileCells), floorTo(node_j, kTileCells), layer / kTileLayers};
+        const TilePlace place{floorDivide(node_i, kTileCells), floorDivide(node_j, kTileCells), layer / kTileLayers};
         const SwellTile* from = tile(toolpath, stack, place);
         if (from == nullptr) continue;
         const auto valueOf = [&](const NodeValues& values) {

@@ -29,6 +29,7 @@
 #include "voxelize/beads/plan_bins.h"
 #include "voxelize/beads/settling.h"
 #include "voxelize/swell/node_box.h"
+#include "voxelize/swell/once.h"
 
 #include <array>
 #include <atomic>
@@ -46,12 +47,12 @@ class LayerNeeds;
 constexpr double kNodeSpacing = 0.4;  ///< mm
 /// Along the edge of a tile. A tile's halo is spread with it: larger ones compute less twice, and a brick waits longer.
 constexpr int kTileCells = 32;
-/// Along the edge of a tile of sums, which nothing is computed twice for: a tile needs those around it.
+/// Along the edge of a tile of sums. A tile needs the sums of those that it covers, and of those next to it.
 constexpr int kSumCells = 16;
 static_assert(kTileCells % kSumCells == 0);
 /// Layers of a tile: as many of LayerStack::layers, from a multiple of it on.
 constexpr std::uint32_t kTileLayers = 32;
-/// As many layers above the one where it was laid plastic may find a place, by their index too.
+/// Plastic finds a place in its own layer or in as many of those after it, counted by their index.
 constexpr std::uint32_t kUpLayers = 8;
 static_assert(kUpLayers <= kTileLayers);
 constexpr int kNear = 2;  ///< cells: about two widths of a line
@@ -77,6 +78,11 @@ struct TilePlace {
 
     std::uint32_t firstLayer() const { return z * kTileLayers; }
 };
+
+/// Tiles one above the other.
+inline std::uint32_t tilesHigh(const LayerStack& stack) {
+    return static_cast<std::uint32_t>((stack.layers.size() + kTileLayers - 1) / kTileLayers);
+}
 
 /// What a tile's layers hold, by its kSumCells + 1 nodes along each edge: sums over the tile's own cells.
 struct TileSums {
@@ -159,41 +165,6 @@ Number crownDepth(Number crown, Number radius, Number d) {
     const Number across = (d < radius ? (d > -radius ? d : -radius) : radius) + radius;
     return crown * across * across / (4 * radius * radius);
 }
-
-/// Work that is done once, by the thread that comes first.
-class Once {
-public:
-    /// Does it unless it is done. False if another thread is at it.
-    template <typename Work>
-    bool doUnlessAtWork(const Work& work) {
-        State expected = State::to_do;
-        if (state_.compare_exchange_strong(expected, State::at_work)) {
-            try {
-                work();
-            } catch (...) {
-                leave(State::to_do);
-                throw;
-            }
-            leave(State::done);
-            return true;
-        }
-        return expected == State::done;
-    }
-    bool isDone() const { return state_.load() == State::done; }
-    /// Does it, or waits until it is done.
-    template <typename Work>
-    void doOrWait(const Work& work) {
-        while (!doUnlessAtWork(work)) state_.wait(State::at_work);
-    }
-
-private:
-    enum class State : std::uint8_t { to_do, at_work, done };
-    void leave(State state) {
-        state_.store(state);
-        state_.notify_all();
-    }
-    std::atomic<State> state_ = State::to_do;
-};
 
 /// Swell tiles of a print, made on demand. Shared by all threads.
 class SwellField {
