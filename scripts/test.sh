@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Installs what the tests need, builds everything and runs all tests; the last lines are the counts.
-# Arguments go to ctest, e.g. scripts/test.sh -R Voxelizer
+# Installs what the tests need, builds everything and runs all tests; the last lines are the counts. With --changed suites
+# of which nothing changed since scripts/checked_commit are left out. Other arguments go to ctest, e.g. -R Voxelizer
 set -euo pipefail
 cd "$(dirname "$0")/.."
 source scripts/packages.sh
@@ -9,5 +9,11 @@ install_packages "${BUILD_PACKAGES[@]}"
 install_packages --available "${TEST_PACKAGES[@]}"
 cmake --preset release $(compiler_choice) >/dev/null
 cmake --build --preset release
-ctest --test-dir build/release --output-on-failure -j"$(nproc)" "$@"
+leave_out=""
+if [[ "${1:-}" == --changed ]]; then
+    shift
+    leave_out=$(python3 scripts/unchanged_suites.py)
+    echo "Suites of which nothing changed since $(cat scripts/checked_commit) are left out: $leave_out"
+fi
+ctest --test-dir build/release --output-on-failure -j"$(nproc)" ${leave_out:+-E "$leave_out"} "$@"
 python3 scripts/test_counts.py build/release
