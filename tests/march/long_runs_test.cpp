@@ -230,7 +230,7 @@ TEST_F(LongRuns, TenMillionGrazingRaysEndWithFiniteAnswers) {
             std::size_t steps = 0;
             Block block{};
             do {
-                block = findBlock(bricks, walk.cell());
+                block = findBlock(bricks, walk.cell(), walk.octant());
                 walk.aim(block.low, block.high);
                 ++steps;
             } while (steps <= most_steps && walk.advance(block.low, block.high, bricks.size()));

@@ -61,7 +61,7 @@ double firstSurface(const BrickGrid& bricks, const glm::dvec3& eye, const glm::d
     if (!walk.enter(0, std::numeric_limits<double>::infinity(), bricks.size()))
         return std::numeric_limits<double>::infinity();
     while (true) {
-        const Block block = findBlock(bricks, walk.cell());
+        const Block block = findBlock(bricks, walk.cell(), walk.octant());
         walk.aim(block.low, block.high);
         if (block.surface) return walk.at(0);
         if (!walk.advance(block.low, block.high, bricks.size())) return std::numeric_limits<double>::infinity();

@@ -54,7 +54,7 @@ TEST(Numerics, Rule2_EveryStepAdvancesWholeCells) {
         int steps = 0;
         glm::ivec3 before = walk.cell();
         while (true) {
-            const Block block = findBlock(bricks, walk.cell());
+            const Block block = findBlock(bricks, walk.cell(), walk.octant());
             ASSERT_TRUE(glm::all(glm::greaterThanEqual(walk.cell(), block.low)));
             ASSERT_TRUE(glm::all(glm::lessThan(walk.cell(), block.high)));
             walk.aim(block.low, block.high);
