@@ -29,8 +29,6 @@ export class BeadRenderer {
     this.beads = makeProgram(gl, beadVertices(kinds), beadFragments(kinds));
     this.lit = makeProgram(gl, screenVertices, lightFragments);
     this.seek = makeProgram(gl, seekVertices(kinds), seekFragments);
-    this.back = makeProgram(gl, backVertices, backFragments);
-    this.backGrid = makeProgram(gl, backVertices, gridFragments);
     this.textures = {
       beads: makeTable(gl, table.words, 4),
       runs: makeTable(gl, table.runs, 4),
@@ -59,6 +57,7 @@ export class BeadRenderer {
     this.size = [0, 0];
     this.end = table.count;
     this.look = null;
+    this.backs = {}; // programs
     this.lines = new LineRenderer(gl);
     if (gl.getError()) throw new Error("not enough memory on its GPU");
   }
@@ -163,8 +162,7 @@ export class BeadRenderer {
     gl.bindFramebuffer(gl.FRAMEBUFFER, null);
     gl.disable(gl.DEPTH_TEST);
     const values = this.#stage(camera, state);
-    if (values.as_normals) gl.clear(gl.COLOR_BUFFER_BIT);
-    else this.#drawBack(values);
+    this.#drawBack(values, false);
     gl.useProgram(this.lit.program);
     setUniforms(gl, this.lit, values);
     gl.enable(gl.BLEND);
@@ -185,21 +183,13 @@ export class BeadRenderer {
     const coarse = this.#coarseFor(camera, state);
     const values = { ...this.#stage(camera, state), least: 0.6 * coarse.stride * this.table.layerHeight };
     this.#use(this.quick, this.quickTarget, values);
-    gl.clearBufferfv(gl.COLOR, 0, [0, 0, 0, 1]);
+    gl.clearBufferfv(gl.COLOR, 0, [0, 0, 0, 0]);
     gl.clearBufferuiv(gl.COLOR, 1, [0, 0, 0, 0]);
     gl.clearBufferfv(gl.DEPTH, 0, [0]);
     this.#drawList(this.quick, coarse.ribbonsOf(this.visible.seenBeads));
-    if (!values.as_normals) {
-      gl.drawBuffers([gl.COLOR_ATTACHMENT0, gl.NONE]);
-      gl.depthFunc(gl.EQUAL); // where no bead is
-      this.#drawBack(values);
-      gl.drawBuffers([gl.COLOR_ATTACHMENT0, gl.COLOR_ATTACHMENT1]);
-    }
-    gl.bindFramebuffer(gl.DRAW_FRAMEBUFFER, null);
-    const whole = [0, 0, ...this.size];
-    gl.blitFramebuffer(...whole, ...whole, gl.COLOR_BUFFER_BIT, gl.NEAREST);
     gl.bindFramebuffer(gl.FRAMEBUFFER, null);
     gl.disable(gl.DEPTH_TEST);
+    this.#drawBack(values, true);
     this.lines.draw({ ...values, eye: camera.eye }, this.textures.depths);
   }
 
@@ -270,9 +260,10 @@ export class BeadRenderer {
     };
   }
 
-  #drawBack(values) {
+  #drawBack(values, over) {
     const gl = this.gl;
-    const back = values.has_bed && this.look.bed.grid ? this.backGrid : this.back;
+    const grid = values.has_bed && this.look.bed.grid && !values.as_normals;
+    const back = (this.backs[`${grid} ${over}`] ??= makeProgram(gl, backVertices, (grid ? gridFragments : backFragments)(over)));
     gl.useProgram(back.program);
     setUniforms(gl, back, values);
     gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, this.grid);
