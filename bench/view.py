@@ -24,25 +24,9 @@ import time
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.dirname(os.path.abspath(__file__))), "tests/clients"))
 from chromium import browser
+from page_memory import ORBIT, memory_of, until
 from viewer_socket import resident, soak
 
-ORBIT = """
-const done = arguments[1], seconds = arguments[0], c = document.getElementById('picture'), b = c.getBoundingClientRect();
-const at = (type, x, y, buttons) => c.dispatchEvent(new PointerEvent(type, { pointerId: 1, clientX: b.left + x,
-    clientY: b.top + y, buttons, button: 0, bubbles: true }));
-c.setPointerCapture = () => {};
-window.vdbviewLog.length = 0;
-at('pointerdown', 300, 300, 1);
-const begin = performance.now();
-const tick = () => {
-  const t = (performance.now() - begin) / 1000;
-  at('pointermove', 300 + 150 * t, 300 + 60 * Math.sin(2 * t), 1);
-  if (t < seconds) return requestAnimationFrame(tick);
-  const log = window.vdbviewLog.filter((e) => e.kind === 'moving' || e.kind === 'own');
-  at('pointerup', 300, 300, 0);
-  done(log);
-};
-requestAnimationFrame(tick);"""
 SLIDE = """
 const done = arguments[0], s = document.getElementById('layer-high'), most = Number(s.max);
 window.vdbviewLog.length = 0;
@@ -84,16 +68,6 @@ def window(profile):
     inner = page.execute_script("return [innerWidth, innerHeight]")
     page.set_window_size(1580 + 1580 - inner[0], 900 + 763 - inner[1])
     return page
-
-
-def until(page, kind, seconds=300):
-    end = time.monotonic() + seconds
-    while time.monotonic() < end:
-        found = page.execute_script(f"return (window.vdbviewLog ?? []).find((e) => e.kind === '{kind}')")
-        if found:
-            return found
-        time.sleep(0.02)
-    sys.exit(f"no {kind} picture within {seconds} s")
 
 
 def measure(folder, path, seconds, page):
@@ -149,52 +123,15 @@ def turning(folder, path, seconds, page, rounds):
           f"{own_pixels / stream_pixels:.1f} x the pixels", flush=True)
 
 
-def shares(page):
-    """MB of Chromium's renderers and of its GPU's process, in which SwiftShader is, by process: what they have for
-    themselves, and their share of what they have in common with others (PSS)."""
-    parents, found = {}, {"renderer": {}, "gpu-process": {}}
-    for name in filter(str.isdigit, os.listdir("/proc")):
-        try:
-            with open(f"/proc/{name}/stat", encoding="utf-8") as file:
-                parents[int(name)] = int(file.read().rsplit(")", 1)[1].split()[1])
-        except OSError:
-            pass  # it has just ended
-    inside = {page.service.process.pid}
-    while more := {child for child, parent in parents.items() if parent in inside} - inside:
-        inside |= more
-    for process in inside:
-        try:
-            with open(f"/proc/{process}/cmdline", encoding="utf-8") as file:
-                kind = re.search(r"--type=(renderer|gpu-process)", file.read())
-            with open(f"/proc/{process}/smaps_rollup", encoding="utf-8") as file:
-                size = int(re.search(r"Pss:\s+(\d+)", file.read()).group(1)) / 1024
-        except OSError:
-            continue
-        if kind:
-            found[kind.group(1)][process] = size
-    return found
-
-
 def memory_of_page(folder, path, seconds, page):
-    page.get("about:blank")
-    time.sleep(2)
-    empty = shares(page)
     process, url = start(folder, path)
-    page.get(url)
-    until(page, "final")
-    first = shares(page)
-    page.execute_script("const s = document.getElementById('color-by'); s.value = 'speed'; s.dispatchEvent(new Event('change'))")
-    page.execute_async_script(ORBIT, seconds)
-    until(page, "final")
-    last = shares(page)
+    moments = memory_of(page, url, seconds)
     process.terminate()
     process.wait()
-    # Other renderers are of the browser itself.
-    own = {kind: max(sizes, key=sizes.get) for kind, sizes in last.items()}
-    columns = [[sizes[kind].get(own[kind], 0) for kind in own] for sizes in (empty, first, last)]
     words = ", ".join(f"{title}: renderer {renderer:.0f}, GPU {gpu:.0f} MB" for title, (renderer, gpu) in
-                      zip(("an empty page", "the finished picture", "coloured by speed and turned"), columns))
-    print(f"{os.path.basename(path)}: {words}; {sum(columns[2]) - sum(columns[0]):.0f} MB more than an empty page", flush=True)
+                      zip(("an empty page", "the finished picture", "coloured by speed and turned", "without garbage"), moments))
+    empty, _, last, _ = moments
+    print(f"{os.path.basename(path)}: {words}; {sum(last) - sum(empty):.0f} MB more than an empty page", flush=True)
 
 
 def tell(seconds, process, clients):

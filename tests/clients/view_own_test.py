@@ -1,6 +1,7 @@
 """The picture that the page draws itself: headless Chromium's WebGL2 against vdbtrace's normals, and what goes wrong."""
 
 import json
+import os
 import shutil
 import tempfile
 import time
@@ -249,6 +250,67 @@ def quick_colors():
             check(found["count"] > 500 and found["off"] < most, f"colours of a quick picture: {found}")
 
 
+# Of a view whose finished picture is of normals: how many pixels a place that is print in that picture, but not in the page's
+# quick one, or the other way round, is away from the other's print at most; and the same of the page's picture at rest.
+OUTLINE = """
+const done = arguments[0];
+(async () => {
+  const { BeadRenderer } = await import(location.pathname + "bead_renderer.js");
+  const { light } = BeadRenderer.prototype;
+  let last;
+  BeadRenderer.prototype.light = function (...view) { light.apply(this, view); last = [this, view]; };
+  const image = new Image();
+  image.src = await window.vdbviewDrawn();
+  BeadRenderer.prototype.light = light;
+  const [renderer, view] = last, [width, height] = renderer.size;
+  for (let n = 0; n < 12; ++n) { renderer.drawQuick(...view); renderer.note(); renderer.lookFor(...view, 32); }
+  renderer.drawQuick(...view);
+  const ids = renderer.ids(0, 0, width, height);
+  const bitmap = await createImageBitmap(window.vdbviewFinal);
+  await image.decode();
+  if (bitmap.width !== width || bitmap.height !== height) return done({ error: "sizes" });
+  const context = new OffscreenCanvas(width, height).getContext("2d");
+  const pixels = (source, is) => {
+    context.drawImage(source, 0, 0);
+    const { data } = context.getImageData(0, 0, width, height);
+    return Array.from({ length: width * height }, (_, n) => is([0, 1, 2].map((k) => data[4 * n + k])));
+  };
+  const traced = pixels(bitmap, (rgb) => Math.hypot(...rgb.map((v) => v / 127.5 - 1)) > 0.5); // half of the samples
+  const own = { quick: traced.map((_, n) => ids[(height - 1 - Math.floor(n / width)) * width + n % width] > 0),
+                rest: pixels(image, (rgb) => Math.max(...rgb) > 0) };
+  const away = (other, x, y) => {
+    for (let r = 0; r < 20; ++r)
+      for (let v = Math.max(0, y - r); v <= Math.min(height - 1, y + r); ++v)
+        for (let u = Math.max(0, x - r); u <= Math.min(width - 1, x + r); ++u) if (other[v * width + u]) return r;
+    return 20;
+  };
+  const found = { hits: traced.filter((is) => is).length };
+  for (const [name, its] of Object.entries(own))
+    found[name] = its.reduce((most, is, n) => (is === traced[n] ? most : Math.max(most, away(is ? traced : its, n % width, Math.floor(n / width)))), 0);
+  done(found);
+})().catch((error) => done({ error: String(error) }));"""
+
+
+def circles():
+    """Quick pictures of large arcs have the silhouette of vdbtrace's picture: whole, near, half printed, cut open."""
+    lines = ["M83"]
+    for layer in range(1, 31):
+        lines.append(f";LAYER_CHANGE\n;TYPE:External perimeter\n;WIDTH:0.45\n;HEIGHT:0.2\nG0 X160 Y100 Z{0.2 * layer:.1f}\n"
+                     "G3 X40 I-60 J0 E7\nG3 X160 I60 J0 E7")
+    path = os.path.join(FOLDER, "ring.gcode")
+    with open(path, "w", encoding="utf-8") as file:
+        file.write("\n".join(lines))
+    whole = {"eye": [100, -120, 160], "look_at": [100, 100, 0], "fov": 32}
+    near = {"eye": [100, -60, 60], "look_at": [100, 42, 3], "fov": 20}
+    for view in ({"camera": whole}, {"camera": near}, {"camera": whole, "printed": 25}, {"camera": whole, "clip": [0, -1, 0, -80]}):
+        with viewer.of(path, "--voxel-size", "0.1"):
+            drawn_here()
+            show(integrator="normal", bed=False, spp=16, **view)
+            found = page.execute_async_script(OUTLINE)
+            print(f"silhouette of a circle, {view}: {found}")
+            check(found["hits"] > 500 and found["quick"] <= 1 and found["rest"] <= 1, f"the silhouette of a circle: {found}")
+
+
 def picks():
     """The page's own answers are those of the server."""
     same = 0
@@ -298,6 +360,7 @@ try:
     carries_nothing()
     comes_into_sight()
     quick_colors()
+    circles()
     agrees("tile.gcode", {"eye": [110, 60, 40], "look_at": [100, 98, 1], "fov": 2.5})
     agrees("tile_arcs.gcode", {"eye": [110, 60, 40], "look_at": [100, 98, 1], "fov": 2.5})
     agrees("vase.gcode", {"eye": [150, 60, 40], "look_at": [100, 90, 10], "fov": 3})

@@ -1,6 +1,7 @@
 #include "view/beads/bead_table.h"
 
 #include "base/error.h"
+#include "gcode/toolpath/plan_path.h"
 #include "voxelize/beads/growth.h"
 
 #include <fmt/format.h>
@@ -56,6 +57,14 @@ BeadTable::BeadTable(std::shared_ptr<const gcode::Toolpath> toolpath) : toolpath
         for (std::size_t n = 0; n < ends.size(); ++n) {
             low_[n % 3] = std::min(low_[n % 3], ends[n]);
             high[n % 3] = std::max(high[n % 3], ends[n]);
+        }
+        if (bead.arc >= 0) {  // it may reach beyond its ends
+            double min[2], max[2];
+            gcode::PlanPath(print, bead).bounds(min, max);
+            for (std::size_t axis = 0; axis < 2; ++axis) {
+                low_[axis] = std::min(low_[axis], min[axis]);
+                high[axis] = std::max(high[axis], max[axis]);
+            }
         }
         arcs_ = arcs_ || bead.arc >= 0;
         slopes_ = slopes_ || bead.z0 != bead.z1;

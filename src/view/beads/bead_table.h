@@ -14,7 +14,8 @@
 namespace stratum::view {
 
 /// A row of texels, in the order of the print; a texel is four words of 32 bits. That of a bead:
-///   x0 | y0 << 16,  x1 | y1 << 16,  z0 | z1 << 16   the nozzle at its ends, in steps of `grain` from `low`
+///   x0 | y0 << 16,  x1 | y1 << 16,  z0 | z1 << 16   the nozzle at its ends, in steps of `grain` from `low`,
+///                                               the corner of the box of all paths
 ///   width | extra << 12 | run << 13                 in steps of 4 micrometres; 1 if a texel follows that belongs to it
 /// and of what follows an arc, or a bead that widens, as floats:
 ///   x and y of the center from `low`, sweep in radians (0: no arc), width at its end less width at its start

@@ -3,14 +3,14 @@
 import { SOUGHT, beadFragments, beadVertices, seekFragments, seekVertices } from "./bead_shaders.js";
 import { GRID, backFragments, backVertices, gridFragments, lightFragments, screenVertices } from "./light_shaders.js";
 import { CoarseBeads } from "./coarse_beads.js";
-import { piecesOf, quickFragments, quickVertices } from "./quick_shaders.js";
+import { quickFragments, quickVertices } from "./quick_shaders.js";
 import { VisibleBeads } from "./visible_beads.js";
 import { LineRenderer } from "./line_renderer.js";
 import { ROW, fillTable, makeFramebuffer, makeIndices, makeProgram, makeTable, makeTexture, release, setUniforms } from "./webgl.js";
 import { dot, project, sub } from "./camera.js";
 
 const SETS = 3; // of coarse beads that are kept: each takes half of what the table takes
-const DRAW = 16384; // beads a call: their corners are counted in 16 bits
+const DRAW = 16384; // beads or ribbons a call: their corners are counted in 16 bits
 
 export class BeadRenderer {
   /** Throws an Error that says what is missing. */
@@ -29,8 +29,6 @@ export class BeadRenderer {
     this.beads = makeProgram(gl, beadVertices(kinds), beadFragments(kinds));
     this.lit = makeProgram(gl, screenVertices, lightFragments);
     this.seek = makeProgram(gl, seekVertices(kinds), seekFragments);
-    this.back = makeProgram(gl, backVertices, backFragments);
-    this.backGrid = makeProgram(gl, backVertices, gridFragments);
     this.textures = {
       beads: makeTable(gl, table.words, 4),
       runs: makeTable(gl, table.runs, 4),
@@ -41,7 +39,6 @@ export class BeadRenderer {
     };
     for (const name of ["coarse", "ends"]) this.textures[name] = makeTable(gl, new Uint32Array(1), 1);
     for (const name of ["palette", "ids", "normals", "depths", "picture"]) this.textures[name] = makeTexture(gl);
-    this.listRows = 1;
     this.units = Object.fromEntries(Object.keys(this.textures).map((name, n) => [name, n]));
     const corners = new Uint16Array(6 * DRAW);
     for (let n = 0; n < DRAW; ++n) corners.set([0, 1, 2, 2, 1, 3].map((k) => 4 * n + k), 6 * n);
@@ -60,6 +57,7 @@ export class BeadRenderer {
     this.size = [0, 0];
     this.end = table.count;
     this.look = null;
+    this.backs = {}; // programs
     this.lines = new LineRenderer(gl);
     if (gl.getError()) throw new Error("not enough memory on its GPU");
   }
@@ -152,9 +150,9 @@ export class BeadRenderer {
       this.visible.restart();
       gl.clearBufferuiv(gl.COLOR, 0, [0, 0, 0, 0]);
       gl.clearBufferfv(gl.DEPTH, 0, [0]);
-      this.#drawList(this.beads, 1);
+      this.#drawList(this.beads, this.visible.seenBeads);
     }
-    for (let n = 0; n < parts && !this.visible.complete; ++n) this.#drawBeads(this.beads, 1, false, ...this.visible.part());
+    for (let n = 0; n < parts && !this.visible.complete; ++n) this.#drawBeads(this.beads, false, ...this.visible.part());
     return this.visible.complete;
   }
 
@@ -164,8 +162,7 @@ export class BeadRenderer {
     gl.bindFramebuffer(gl.FRAMEBUFFER, null);
     gl.disable(gl.DEPTH_TEST);
     const values = this.#stage(camera, state);
-    if (values.as_normals) gl.clear(gl.COLOR_BUFFER_BIT);
-    else this.#drawBack(values);
+    this.#drawBack(values, false);
     gl.useProgram(this.lit.program);
     setUniforms(gl, this.lit, values);
     gl.enable(gl.BLEND);
@@ -182,25 +179,17 @@ export class BeadRenderer {
   drawQuick(camera, state) {
     const gl = this.gl;
     const { kinds } = this.table;
-    this.quick ??= makeProgram(gl, quickVertices(kinds), quickFragments);
+    this.quick ??= makeProgram(gl, quickVertices(kinds), quickFragments(kinds));
     const coarse = this.#coarseFor(camera, state);
     const values = { ...this.#stage(camera, state), least: 0.6 * coarse.stride * this.table.layerHeight };
     this.#use(this.quick, this.quickTarget, values);
-    gl.clearBufferfv(gl.COLOR, 0, [0, 0, 0, 1]);
+    gl.clearBufferfv(gl.COLOR, 0, [0, 0, 0, 0]);
     gl.clearBufferuiv(gl.COLOR, 1, [0, 0, 0, 0]);
     gl.clearBufferfv(gl.DEPTH, 0, [0]);
-    this.#drawList(this.quick, piecesOf(kinds));
-    if (!values.as_normals) {
-      gl.drawBuffers([gl.COLOR_ATTACHMENT0, gl.NONE]);
-      gl.depthFunc(gl.EQUAL); // where no bead is
-      this.#drawBack(values);
-      gl.drawBuffers([gl.COLOR_ATTACHMENT0, gl.COLOR_ATTACHMENT1]);
-    }
-    gl.bindFramebuffer(gl.DRAW_FRAMEBUFFER, null);
-    const whole = [0, 0, ...this.size];
-    gl.blitFramebuffer(...whole, ...whole, gl.COLOR_BUFFER_BIT, gl.NEAREST);
+    this.#drawList(this.quick, coarse.ribbonsOf(this.visible.seenBeads));
     gl.bindFramebuffer(gl.FRAMEBUFFER, null);
     gl.disable(gl.DEPTH_TEST);
+    this.#drawBack(values, true);
     this.lines.draw({ ...values, eye: camera.eye }, this.textures.depths);
   }
 
@@ -242,31 +231,18 @@ export class BeadRenderer {
     gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, this.corners);
   }
 
-  #drawList(program, pieces) {
+  #drawList(program, list) {
     const gl = this.gl;
-    const { visible } = this;
-    const rows = Math.ceil(visible.count / ROW);
-    if (rows > this.listRows) {
-      this.listRows = 2 * rows;
-      fillTable(gl, this.textures.list, new Uint32Array(this.listRows * ROW), 1);
-      visible.changedFrom = 0;
-    }
     gl.activeTexture(gl.TEXTURE0 + this.units.list);
-    gl.bindTexture(gl.TEXTURE_2D, this.textures.list);
-    for (let y = Math.floor(visible.changedFrom / ROW); y < rows; ++y) {
-      const count = Math.min(ROW, visible.count - y * ROW);
-      gl.texSubImage2D(gl.TEXTURE_2D, 0, 0, y, count, 1, gl.RED_INTEGER, gl.UNSIGNED_INT, visible.list, y * ROW);
-    }
-    visible.changedFrom = visible.count;
-    this.#drawBeads(program, pieces, true, 0, visible.count);
+    fillTable(gl, this.textures.list, list, 1);
+    this.#drawBeads(program, true, 0, list.length);
   }
 
-  #drawBeads(program, pieces, from_list, first, count) {
+  #drawBeads(program, from_list, first, count) {
     const gl = this.gl;
-    const most = DRAW / pieces;
-    for (let n = 0; n < count; n += most) {
+    for (let n = 0; n < count; n += DRAW) {
       setUniforms(gl, program, { from_list, first: first + n });
-      gl.drawElements(gl.TRIANGLES, 6 * pieces * Math.min(most, count - n), gl.UNSIGNED_SHORT, 0);
+      gl.drawElements(gl.TRIANGLES, 6 * Math.min(DRAW, count - n), gl.UNSIGNED_SHORT, 0);
     }
   }
 
@@ -284,9 +260,10 @@ export class BeadRenderer {
     };
   }
 
-  #drawBack(values) {
+  #drawBack(values, over) {
     const gl = this.gl;
-    const back = values.has_bed && this.look.bed.grid ? this.backGrid : this.back;
+    const grid = values.has_bed && this.look.bed.grid && !values.as_normals;
+    const back = (this.backs[`${grid} ${over}`] ??= makeProgram(gl, backVertices, (grid ? gridFragments : backFragments)(over)));
     gl.useProgram(back.program);
     setUniforms(gl, back, values);
     gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, this.grid);

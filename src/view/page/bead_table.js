@@ -79,14 +79,22 @@ export class BeadTable {
     return (this.words[4 * bead + 3] & 4096) !== 0;
   }
 
+  /** Radius, mm, and sweep of a bead, radians; 0: it is straight. */
+  arc(bead) {
+    if (!this.hasExtra(bead)) return [0, 0];
+    const { words, low } = this;
+    const extra = 4 * (this.count + bead);
+    const sweep = asFloat(words[extra + 2]);
+    if (!sweep) return [0, 0];
+    const [from] = this.ends(bead);
+    return [Math.hypot(...[0, 1].map((axis) => asFloat(words[extra + axis]) + low[axis] - from[axis])), sweep]; // the center counts from `low`
+  }
+
   /** Of the path of a bead, mm. */
   length(bead) {
     const [from, to] = this.ends(bead);
-    const sweep = this.hasExtra(bead) ? asFloat(this.words[4 * (this.count + bead) + 2]) : 0;
-    if (!sweep) return Math.hypot(...sub(to, from));
-    // The center counts from the corner of the table.
-    const radius = Math.hypot(...[0, 1].map((axis) => asFloat(this.words[4 * (this.count + bead) + axis]) + this.low[axis] - from[axis]));
-    return Math.hypot(radius * sweep, to[2] - from[2]);
+    const [radius, sweep] = this.arc(bead);
+    return sweep ? Math.hypot(radius * sweep, to[2] - from[2]) : Math.hypot(...sub(to, from));
   }
 
   /** What the table knows of a bead, as the server describes it. */

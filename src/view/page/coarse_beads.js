@@ -1,15 +1,19 @@
 // Beads that stand for others where those are smaller than pixels: one layer of several, and one straight bead for what goes on
-// from it nearly straight. Numbers, no drawing.
+// from it nearly straight; and how many straight ribbons an arc needs. Numbers, no drawing.
 
 const NONE = 0xffffffff;
 const MOST = 64; // beads that one stands for
+/** Of an entry of ribbonsOf(), the bead: a table has at most so many. */
+export const BEAD_BITS = 22;
+const MOST_RIBBONS = 1 << (32 - BEAD_BITS);
 
 export class CoarseBeads {
   /** One of `stride` layers, and within `tolerance`, mm. */
   constructor(table, stride, tolerance) {
     Object.assign(this, { stride, tolerance });
     this.ofBead = new Uint32Array(table.count).fill(NONE); // which one stands for it
-    this.ends = new Uint32Array(table.count); // the last bead that one stands for
+    this.ends = new Uint32Array(table.count); // the last bead that one stands for; of an arc, the number of its ribbons
+    this.arcs = table.kinds.arcs && new Uint8Array(table.count); // 1: it is one
     const beads = new Uint32Array(table.count);
     let count = 0;
     for (let n = 0; n < table.count; ++n) {
@@ -18,9 +22,26 @@ export class CoarseBeads {
       beads[count++] = n;
       this.ofBead.fill(n, n, end + 1);
       this.ends[n] = end;
+      const [radius, sweep] = table.arc(n);
+      if (sweep) {
+        // The ribbons are chords of its outer side, which is at most half of the tolerance away.
+        const ribbons = Math.ceil(Math.abs(sweep) * Math.sqrt((radius + 0.5 * table.width(n)) / (4 * tolerance)));
+        this.ends[n] = Math.min(Math.max(ribbons, 1), MOST_RIBBONS);
+        this.arcs[n] = 1;
+      }
       n = end;
     }
     this.beads = beads.slice(0, count); // those that stand for others
+  }
+
+  /** By ribbon of some of these beads: the bead, and above its BEAD_BITS which ribbon of its arc it is. */
+  ribbonsOf(list) {
+    const { arcs, ends } = this;
+    if (!arcs) return list;
+    const ribbons = new Uint32Array(list.reduce((sum, n) => sum + (arcs[n] ? ends[n] : 1), 0));
+    let count = 0;
+    for (const n of list) for (let part = 0; part < (arcs[n] ? ends[n] : 1); ++part) ribbons[count++] = n | (part << BEAD_BITS);
+    return ribbons;
   }
 }
 

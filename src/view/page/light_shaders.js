@@ -42,6 +42,7 @@ export const GRID = [24, 18];
 export const backVertices = `${HEAD}
 uniform vec3 right, up, forward;
 uniform vec2 slope;
+uniform bool as_normals;
 ${STAGE}
 out vec3 shade;
 out vec3 ray;
@@ -49,18 +50,21 @@ void main() {
   ivec2 at = ivec2(gl_VertexID % ${GRID[0] + 1}, gl_VertexID / ${GRID[0] + 1});
   vec2 place = 2.0 * vec2(at) / vec2(${GRID[0]}, ${GRID[1]}) - 1.0;
   gl_Position = vec4(place, -1.0, 1.0); // as far as a depth can be
+  shade = vec3(0.0);
   ray = forward + place.x * slope.x * right + place.y * slope.y * up;
+  if (as_normals) return;
   vec3 behind = backdrop(ray);
   float to_bed = has_bed && ray.z < 0.0 ? bed_z / ray.z : 1e30;
   vec3 bed = brightest * bed_albedo * lightAt(vec3(0.0, 0.0, 1.0)).x;
   shade = display(mix(bed, behind, to_bed < 1e29 ? bedFade(ray.xy * to_bed) : 1.0));
 }`;
-export const backFragments = `${HEAD}
+/** `over`: a quick picture of the beads lies over it, which costs less here than a copy of that to the canvas. */
+export const backFragments = (over) => `${HEAD}
 in vec3 shade;
-out vec4 color;
-void main() { color = vec4(shade, 1.0); }`;
+${output(over)}
+void main() { show(shade); }`;
 /** The same with the lines of a bed that has a grid. */
-export const gridFragments = `${HEAD}
+export const gridFragments = (over) => `${HEAD}
 uniform vec2 slope, size;
 uniform vec3 eye;
 uniform vec2 corner;        // of the table: the bed's lines count from the origin
@@ -68,9 +72,9 @@ uniform float bed_z;
 uniform vec4 fade;
 in vec3 shade;
 in vec3 ray;
-out vec4 color;
+${output(over)}
 void main() {
-  color = vec4(shade, 1.0);
+  show(shade);
   if (ray.z >= 0.0) return;
   float depth = bed_z / ray.z;
   vec2 mm = ray.xy * depth + eye.xy + corner;
@@ -78,8 +82,15 @@ void main() {
   vec2 fine = abs(mm - 10.0 * round(mm / 10.0)), broad = abs(mm - 50.0 * round(mm / 50.0));
   float a = max(1.0 - min(fine.x, fine.y) / max(0.2, pixel), 0.0) * clamp(1.0 - pixel / 3.0, 0.0, 1.0);
   float b = max(1.0 - min(broad.x, broad.y) / max(0.4, 1.5 * pixel), 0.0) * clamp(1.0 - pixel / 15.0, 0.0, 1.0);
-  color.rgb = mix(color.rgb, vec3(0.62), 0.6 * max(a, b) * (1.0 - clamp(length(ray.xy * depth - fade.xy) / fade.w, 0.0, 1.0)));
+  show(mix(shade, vec3(0.62), 0.6 * max(a, b) * (1.0 - clamp(length(ray.xy * depth - fade.xy) / fade.w, 0.0, 1.0))));
 }`;
+const output = (over) => (over ? `
+uniform sampler2D picture;
+out vec4 color;
+void show(vec3 behind) {
+  color = texelFetch(picture, ivec2(gl_FragCoord.xy), 0);
+  if (color.a == 0.0) color = vec4(behind, 1.0);
+}` : "out vec4 color;\nvoid show(vec3 behind) { color = vec4(behind, 1.0); }");
 
 /** The colour of a bead under that light. */
 export const COLORED = `

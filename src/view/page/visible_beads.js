@@ -14,7 +14,6 @@ export class VisibleBeads {
     this.seenAt = new Uint32Array(beads); // number of the look + 1; 0: not in the list
     this.list = new Uint32Array(Math.min(beads, 4096));
     this.count = 0;
-    this.changedFrom = 0; // the list's texture is right up to here
     this.look = FINE.forget + 1;
     this.coarse = null; // CoarseBeads that stand for the others
     this.restart();
@@ -25,6 +24,9 @@ export class VisibleBeads {
     this.drawn = 0;
   }
 
+  get seenBeads() {
+    return this.list.subarray(0, this.count);
+  }
   get complete() {
     return this.drawn >= this.all;
   }
@@ -49,7 +51,7 @@ export class VisibleBeads {
   standFor(coarse) {
     this.coarse = coarse;
     const old = this.list.slice(0, this.count);
-    this.count = this.changedFrom = 0;
+    this.count = 0;
     this.seenAt.fill(0);
     for (const n of old) this.#add(n, this.look);
   }
@@ -95,6 +97,5 @@ export class VisibleBeads {
       else this.seenAt[bead] = 0;
     }
     this.count = kept;
-    this.changedFrom = 0;
   }
 }

@@ -75,6 +75,21 @@ TEST(BeadTable, HoldsTheBeads) {
     }
 }
 
+// The page draws within that box alone: an arc reaches beyond its ends.
+TEST(BeadTable, ItsBoxHasAllOfAnArc) {
+    const nlohmann::json head =
+        BeadTable(std::make_shared<const gcode::Toolpath>(gcode::readToolpath(
+                      "M83\nG0 X160 Y100 Z.2\nG3 X40 I-60 J0 E1\nG3 X160 I60 J0 E1\n", "ring.gcode")))
+            .head();
+    const auto high = [&](int axis) {
+        return head["low"][axis].get<double>() + 65535 * head["grain"][axis].get<double>();
+    };
+    EXPECT_NEAR(head["low"][1].get<double>(), 40, 1e-9);
+    EXPECT_NEAR(high(1), 160, 1e-9);
+    EXPECT_NEAR(head["low"][0].get<double>(), 40, 1e-9);
+    EXPECT_NEAR(high(0), 160, 1e-9);
+}
+
 TEST(BeadTable, SaysWhatIsPrintedByVolume) {
     const auto print = read("tile.gcode");
     const nlohmann::json printed = BeadTable(print).head()["printed"]["volume"];

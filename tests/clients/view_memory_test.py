@@ -1,0 +1,49 @@
+"""What the viewer's page takes with a print of 400 000 beads, in headless Chromium's own processes."""
+
+import json
+import os
+import subprocess
+import tempfile
+from urllib.parse import quote
+
+from run_tools import BIN, check, skip_without
+
+skip_without(("chromium", "chromedriver"), ("selenium",))
+
+from chromium import browser
+from page_memory import memory_of
+
+BEADS = 400000
+MOST, MOST_KEPT = 165, 130  # MB more than an empty page; 143 to 145 and 117 were measured, 150 and 143 with 64 bytes more a bead
+
+
+def lines():
+    """200 layers of 2000 short beads side by side, of a speed each."""
+    yield "M83"
+    for layer in range(BEADS // 2000):
+        yield f";LAYER_CHANGE\n;TYPE:Internal infill\n;WIDTH:0.4\n;HEIGHT:0.2\nG0 X0 Y0 Z{0.2 * layer + 0.2:.1f} F{1200 + layer}"
+        for n in range(1000):
+            x, y = 2 * (n % 20), 0.4 * (n // 20)
+            yield f"G0 X{x} Y{y:.1f}\nG1 X{x + 1} Y{y:.1f} E0.03\nG1 X{x + 1.9} Y{y + 0.1:.1f} E0.03"
+
+
+with tempfile.TemporaryDirectory() as scratch:
+    path = os.path.join(scratch, "beads.gcode")
+    with open(path, "w", encoding="utf-8") as file:
+        file.write("\n".join(lines()))
+    page = browser(os.path.join(scratch, "profile"), 800, 600, 120)
+    try:
+        with subprocess.Popen([os.path.join(BIN, "vdbview"), path, "--quiet", "--voxel-size", "0.4"], stdout=subprocess.PIPE,
+                              text=True) as process:
+            try:
+                empty, finished, turned, kept = memory_of(page, process.stdout.readline().strip() + "#" + quote(json.dumps({"spp": 1})), 3)
+                beads = page.execute_script("return window.vdbviewLog.some((e) => e.kind === 'own')")
+            finally:
+                process.terminate()
+    finally:
+        page.quit()
+print(f"renderer and GPU's process: empty {empty}, finished {finished}, turned {turned}, without garbage {kept} MB")
+check(beads, "the page draws the beads")
+for name, moment, most in (("turned", turned, MOST), ("without garbage", kept, MOST_KEPT)):
+    added = sum(moment) - sum(empty)
+    check(20 < added < most, f"{name}: the page takes {added:.0f} MB more than an empty one; at most {most}")
