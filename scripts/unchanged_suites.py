@@ -33,6 +33,7 @@ LONG = {
     "Client.view_keys": VIEWER,
     "Client.view_panel": VIEWER,
     "Client.view_faults": VIEWER,
+    "Client.view_memory": VIEWER,
     "Client.view_soak": VIEWER,
     "Client.packages": PACKAGES,
     "Client.install": (*PACKAGES, "docs/"),

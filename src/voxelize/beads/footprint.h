@@ -44,6 +44,7 @@ public:
         const double length = std::sqrt(dx * dx + dy * dy);
         side_x_ = length > 0 ? dy / length * reach : 0;
         side_y_ = length > 0 ? dx / length * reach : reach;
+        slope_ = dy > 0 ? dx / dy : 0;  // rows between both ends of a side are of dy > 0
     }
 
     bool meets(double y) const { return y >= y0_ - reach_ && y <= y1_ + reach_; }
@@ -59,12 +60,13 @@ private:
         };
         if (y <= y0_ + side_y) return disc(x0_, y0_);
         if (y >= y1_ + side_y) return disc(x1_, y1_);
-        return x0_ + side_x + (y - (y0_ + side_y)) / (y1_ - y0_) * (x1_ - x0_);
+        return x0_ + side_x + (y - (y0_ + side_y)) * slope_;
     }
 
     double x0_, y0_, x1_, y1_;
     double reach_;
     double side_x_, side_y_;  // from the path to its right side, the latter downwards
+    double slope_;            // dx / dy
 };
 
 /// Visits the square columns that beads reach. A column is reached if the center of its samples is within limit() of

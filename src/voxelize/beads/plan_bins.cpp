@@ -46,7 +46,8 @@ Parts boundEntries(const gcode::Toolpath& toolpath, const LayerStack& stack, con
                    const Footprints& footprints) {
     const std::size_t beads = stack.beads.size();
     Parts parts;
-    parts.count = std::clamp<std::size_t>(beads / kFewestBeadsAPart, 1, kMostParts);
+    // A power of two: parts are joined by twos where they are too many.
+    parts.count = std::bit_floor(std::clamp<std::size_t>(beads / kFewestBeadsAPart, 1, kMostParts));
     std::vector<double> bounds(parts.count, 0.0);
     std::vector<ColumnRange> ranges(parts.count);
     parallelFor(parts.count, 1, [&](std::size_t begin, std::size_t end) {
@@ -95,35 +96,35 @@ struct alignas(64) BlockCursor {
     }
 };
 
-// The columns that some beads reach, by block.
-struct Marks {
+// How many beads of a part reach each column, by block.
+struct Counts {
+    using OfBlock = std::array<std::uint32_t, std::size_t{kBlockEdge} * kBlockEdge>;  // row by row
     PlanIndex index;
-    std::vector<std::array<std::uint16_t, kBlockEdge>> rows;
+    std::vector<OfBlock> blocks;
 
-    std::array<std::uint16_t, kBlockEdge>& rowsOf(int x, int y) {
-        const std::uint32_t n = at.number(x, y, [this](int i, int j) { return index.add(i, j); });
-        if (n == rows.size()) rows.emplace_back();
-        return rows[n];
+    // Those of row j within a block.
+    std::uint32_t* row(int x, int j) {
+        const std::uint32_t n = at.number(x, j >> 4, [this](int i, int k) { return index.add(i, k); });
+        if (n == blocks.size()) blocks.emplace_back();
+        return blocks[n].data() + std::ptrdiff_t{j & (kBlockEdge - 1)} * kBlockEdge;
     }
 
     BlockCursor at;
 };
 
-// Blocks in the order of a .vdb file, with the columns that are marked in any part.
-std::vector<Block> blocksOf(std::vector<Marks>& parts) {
-    Marks all = std::move(parts.front());
-    for (std::size_t p = 1; p < parts.size(); ++p)
-        for (std::size_t n = 0; n < parts[p].rows.size(); ++n) {
-            const auto [x, y] = parts[p].index.squares()[n];
-            auto& to = all.rowsOf(x, y);
-            for (std::size_t row = 0; row < to.size(); ++row) to[row] |= parts[p].rows[n][row];
+// Blocks in the order of a .vdb file, with the columns that beads of any part reach.
+std::vector<Block> blocksOf(const std::vector<Counts>& parts) {
+    PlanIndex index;
+    std::vector<Block> blocks;
+    for (const Counts& part : parts)
+        for (std::size_t n = 0; n < part.blocks.size(); ++n) {
+            const auto [x, y] = part.index.squares()[n];
+            const std::uint32_t at = index.add(x, y);
+            if (at == blocks.size()) blocks.push_back({.x = x, .y = y});
+            for (std::size_t c = 0; c < part.blocks[n].size(); ++c)
+                if (part.blocks[n][c] != 0)
+                    blocks[at].rows[c / kBlockEdge] |= static_cast<std::uint16_t>(1U << c % kBlockEdge);
         }
-    std::vector<Block> blocks(all.rows.size());
-    for (std::size_t n = 0; n < blocks.size(); ++n) {
-        blocks[n].x = all.index.squares()[n].x;
-        blocks[n].y = all.index.squares()[n].y;
-        blocks[n].rows = all.rows[n];
-    }
     constexpr int kUpperBits = 5;  // of OpenVDB's upper nodes
     const auto order = [](const Block& block) {
         return std::tuple(block.x >> kUpperBits, block.y >> kUpperBits, block.x, block.y);
@@ -139,6 +140,25 @@ std::vector<Block> blocksOf(std::vector<Marks>& parts) {
         block.last = columns;
     }
     return blocks;
+}
+
+// The counts by part, of which some are joined so that there are so many, and column.
+std::vector<std::uint32_t> byColumn(const std::vector<Counts>& counts, std::size_t parts,
+                                    const std::vector<Block>& blocks, const PlanIndex& index) {
+    const std::size_t columns = blocks.back().last;
+    std::vector<std::uint32_t> sums(parts * columns, 0);
+    const std::size_t together = counts.size() / parts;
+    parallelFor(parts, 1, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t p = begin * together; p != end * together; ++p)
+            for (std::size_t n = 0; n < counts[p].blocks.size(); ++n) {
+                const auto [x, y] = counts[p].index.squares()[n];
+                const Block& block = blocks[index.find(x, y)];
+                std::uint32_t* column = sums.data() + p / together * columns + block.first;
+                for (std::size_t c = 0; c < counts[p].blocks[n].size(); ++c)
+                    if ((block.rows[c / kBlockEdge] >> c % kBlockEdge & 1) != 0) *column++ += counts[p].blocks[n][c];
+            }
+    });
+    return sums;
 }
 
 void refuseIfTooLarge(double bytes, std::size_t free_memory) {
@@ -161,7 +181,14 @@ PlanBins::PlanBins(const gcode::Toolpath& toolpath, const LayerStack& stack, con
     const Parts found = boundEntries(toolpath, stack, lattice, footprints);
     if (found.columns.empty()) return;
     rectangle_ = found.columns;
-    refuseIfTooLarge(found.bound * sizeof(std::uint32_t), free_memory);
+    // What the parts count in, and then the ranks: an entry is in one block, and there are so many in the rectangle.
+    const auto blocksAlong = [](int first, int last) {
+        return static_cast<double>((last >> kBlockBits) - (first >> kBlockBits) + 1);
+    };
+    const double counted =
+        std::min(found.bound, static_cast<double>(found.count) * blocksAlong(rectangle_.i0, rectangle_.i1) *
+                                  blocksAlong(rectangle_.j0, rectangle_.j1));
+    refuseIfTooLarge(std::max(counted * sizeof(Counts::OfBlock), found.bound * sizeof(std::uint32_t)), free_memory);
 
     // Calls visit(part, rank, i0, i1, j) for the rows of columns that beads reach, part by part, by rank.
     const auto forEachRow = [&](std::size_t parts, const auto& visit) {
@@ -173,15 +200,14 @@ PlanBins::PlanBins(const gcode::Toolpath& toolpath, const LayerStack& stack, con
                                              [&](int i0, int i1, int j) { visit(p, rank, i0, i1, j); });
         });
     };
-    std::vector<Marks> marks(found.count);
+    std::vector<Counts> counts(found.count);
     forEachRow(found.count, [&](std::size_t p, std::size_t, int i0, int i1, int j) {
         forEachBlockOfRow(i0, i1, [&](int x, int first, int last) {
-            marks[p].rowsOf(x, j >> kBlockBits)[static_cast<std::size_t>(j & (kBlockColumns - 1))] |=
-                static_cast<std::uint16_t>((2U << last) - (1U << first));
+            std::uint32_t* const row = counts[p].row(x, j);
+            for (int i = first; i <= last; ++i) ++row[i];
         });
     });
-    blocks_ = blocksOf(marks);
-    marks = {};
+    blocks_ = blocksOf(counts);
     const std::size_t count = blocks_.back().last;
     std::size_t parts = found.count;
     // Without a table for each part if many columns have few beads.
@@ -198,35 +224,26 @@ PlanBins::PlanBins(const gcode::Toolpath& toolpath, const LayerStack& stack, con
                 if (block.has(i, j)) places_.push_back({block.x * kBlockColumns + i, block.y * kBlockColumns + j});
     }
 
-    // Calls visit(part, rank, column) for all entries.
-    const auto forEachEntry = [&](const auto& visit) {
-        std::vector<BlockCursor> cursors(parts);
-        forEachRow(parts, [&](std::size_t p, std::size_t rank, int i0, int i1, int j) {
-            forEachBlockOfRow(i0, i1, [&](int x, int first, int last) {
-                const Block& block = blocks_[cursors[p].number(
-                    x, j >> kBlockBits, [this](int block_x, int block_y) { return index_.find(block_x, block_y); })];
-                std::size_t column = block.columnAt(first, j & (kBlockColumns - 1));
-                for (int i = first; i <= last; ++i, ++column) visit(p, rank, column);
-            });
-        });
-    };
-
-    // Counts by part and column; then, by column, where each part's ranks begin, relative to the column.
-    std::vector<std::uint32_t> next(parts * count, 0);
-    forEachEntry([&](std::size_t p, std::size_t, std::size_t c) { ++next[p * count + c]; });
+    std::vector<std::uint32_t> next = byColumn(counts, parts, blocks_, index_);
+    counts = {};
+    // By column, where each part's ranks begin, relative to the block.
     offsets_.assign(count + 1, 0);
-    for (std::size_t c = 0; c < count; ++c) {
-        std::uint32_t sum = 0;
-        for (std::size_t p = 0; p < parts; ++p) {
-            const std::uint32_t own = next[p * count + c];
-            next[p * count + c] = sum;
-            sum += own;
+    for (const Block& block : blocks_)
+        for (std::size_t c = block.first; c < block.last; ++c) {
+            auto sum = static_cast<std::uint32_t>(offsets_[c] - offsets_[block.first]);
+            for (std::size_t p = 0; p < parts; ++p) sum += std::exchange(next[p * count + c], sum);
+            offsets_[c + 1] = offsets_[block.first] + sum;
         }
-        offsets_[c + 1] = offsets_[c] + sum;
-    }
     ranks_ = HugeArray<std::uint32_t>(offsets_.back());
-    forEachEntry([&](std::size_t p, std::size_t rank, std::size_t c) {
-        ranks_[offsets_[c] + next[p * count + c]++] = static_cast<std::uint32_t>(rank);
+    std::vector<BlockCursor> cursors(parts);
+    forEachRow(parts, [&](std::size_t p, std::size_t rank, int i0, int i1, int j) {
+        forEachBlockOfRow(i0, i1, [&](int x, int first, int last) {
+            const Block& block = blocks_[cursors[p].number(
+                x, j >> kBlockBits, [this](int block_x, int block_y) { return index_.find(block_x, block_y); })];
+            std::uint32_t* const ranks = ranks_.data() + offsets_[block.first];
+            std::uint32_t* place = next.data() + p * count + block.columnAt(first, j & (kBlockColumns - 1));
+            for (int i = first; i <= last; ++i, ++place) ranks[(*place)++] = static_cast<std::uint32_t>(rank);
+        });
     });
 }
 
