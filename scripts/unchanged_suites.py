@@ -1,5 +1,6 @@
 """Prints a regular expression for ctest -E: the suites of which nothing changed since a commit, and nothing if there is none.
-Usage: unchanged_suites.py [COMMIT]; without, the one that scripts/checked_commit names.
+Usage: unchanged_suites.py [--rooms] [COMMIT]; without a commit, the one that scripts/checked_commit names. With --rooms the
+rooms of which something changed, instead.
 
 - A room's suites are left out if no file of the room, of the rooms that it includes, or of its tests changed.
 - Programs that take long are left out if nothing changed of what they test: LONG says where that is. All tools are linked
@@ -116,16 +117,16 @@ def unchanged(paths, rooms):
     return patterns
 
 
-def main(commit):
-    paths = changed_since(commit)
-    if paths is None:
-        return
+def main(commit, only_rooms):
     rooms = {name for name in os.listdir(os.path.join(ROOT, "src")) if os.path.isdir(os.path.join(ROOT, "src", name))}
-    patterns = unchanged(paths, rooms)
-    if patterns:
+    paths = changed_since(commit)
+    if only_rooms:
+        print(" ".join(sorted(rooms if paths is None else changed_rooms(paths, rooms))))
+    elif patterns := unchanged(paths, rooms) if paths is not None else []:
         print(f"^({'|'.join(patterns)})$")
 
 
 if __name__ == "__main__":
     with open(os.path.join(ROOT, "scripts", "checked_commit"), encoding="utf-8") as checked:
-        main(sys.argv[1] if len(sys.argv) > 1 else checked.read().strip())
+        given = [word for word in sys.argv[1:] if word != "--rooms"]
+        main(given[0] if given else checked.read().strip(), "--rooms" in sys.argv)
