@@ -10,13 +10,11 @@ install_packages "${BUILD_PACKAGES[@]}" libgtest-dev python3 libclang-rt-dev llv
 export ASAN_OPTIONS=quarantine_size_mb=64 LSAN_OPTIONS=suppressions=$PWD/tests/lsan.supp:print_suppressions=0
 leave_out=""
 if [[ "${1:-}" == --changed ]]; then
-    shift
     if [[ -z "$(python3 scripts/unchanged_suites.py --rooms)" ]]; then
         echo "Nothing of a room changed since $(cat scripts/checked_commit): nothing to run under sanitizers"
         exit
     fi
     leave_out=$(python3 scripts/unchanged_suites.py)
-    echo "Suites of which nothing changed since $(cat scripts/checked_commit) are left out: $leave_out"
 fi
 for sanitizer in asan tsan; do
     cmake --preset "$sanitizer" >/dev/null

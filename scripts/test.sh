@@ -13,7 +13,6 @@ leave_out=""
 if [[ "${1:-}" == --changed ]]; then
     shift
     leave_out=$(python3 scripts/unchanged_suites.py)
-    echo "Suites of which nothing changed since $(cat scripts/checked_commit) are left out: $leave_out"
 fi
 ctest --test-dir build/release --output-on-failure -j"$(nproc)" ${leave_out:+-E "$leave_out"} "$@"
 python3 scripts/test_counts.py build/release

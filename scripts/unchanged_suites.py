@@ -15,16 +15,16 @@ import sys
 
 ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 # Nothing that a suite runs depends on these, but for the programs in LONG that name them.
-APART = ("docs/", "bench/", "examples/", "scripts/", "tools/", "tests/clients/", "tests/python/", "tests/house_test.py",
+APART = (".ci/", "docs/", "bench/", "examples/", "scripts/", "tools/", "tests/clients/", "tests/python/", "tests/house_test.py",
          "tests/pages_test.py", "tests/counts_test.py", "tests/suites_test.py", ".clang-tidy", ".gitignore", "NOTICE",
          "LICENSE")
 SHARED = ("scripts/packages.sh",)
 # Executables of tests/CMakeLists.txt whose tests lie in the folder of another room.
 FOLDER_OF = {"prints": "voxelize", "march_long": "march"}
 
-VIEWER = ("src/view/", "src/serve/", "src/assemble/", "tools/vdbview.cpp", "tests/clients/view", "tests/clients/chromium.py")
+VIEWER = ("src/view/", "src/serve/", "src/assemble/", "tools/vdbview.cpp")
 FILES = ("src/base/", "src/gcode/", "src/march/file/", "src/export/", "src/shade/measured/", "src/shade/environment/",
-         "src/shade/film/", "src/assemble/", "src/compare/", "src/deposit/", "tools/", "tests/clients/run_tools.py")
+         "src/shade/film/", "src/assemble/", "src/compare/", "src/deposit/", "tools/")
 SHARDS = ("src/animate/", "src/assemble/", "src/shade/film/", "src/base/", "tools/vdbtrace.cpp", "tools/vdbmerge.cpp",
           "scripts/slurm/")
 PACKAGES = ("tools/", "scripts/bind_own_functions.py", "examples/", "src/python/", "NOTICE")
@@ -44,7 +44,7 @@ LONG = {
     "Client.shard": SHARDS,
     "Client.slurm": SHARDS,
     "Client.elements": ("src/mechanics/", "src/voxelize/", "tools/gcode2vdb.cpp"),
-    "Studies": ("src/study/", "tools/vdbstudy.cpp", "scripts/study.sh", "scripts/studies_page.py", "tests/clients/studies_test.py"),
+    "Studies": ("src/study/", "tools/vdbstudy.cpp", "scripts/study.sh", "scripts/studies_page.py"),
 }
 LONG["Client.studies"] = LONG["Studies"]
 
@@ -112,8 +112,11 @@ def unchanged(paths, rooms):
         used = set().union(*(sources[other] for other in (includes(f"tests/{room}") & rooms) | {room}))
         if not used & changed:
             patterns.append(rf"{program}\..*")
-    patterns += [re.escape(name) for name, places in LONG.items()
-                 if not any(path.startswith((*places, f"tests/clients/{name.split('.')[-1]}_test.py")) for path in paths)]
+    # What the programs of tests/clients import may be of all of them.
+    if not any(path.startswith("tests/clients/") and not path.endswith("_test.py") for path in paths):
+        patterns += [re.escape(name) for name, places in LONG.items()
+                     if not any(path.startswith((*places, f"tests/clients/{name.split('.')[-1].lower()}_test.py"))
+                                for path in paths)]
     return patterns
 
 
@@ -123,6 +126,7 @@ def main(commit, only_rooms):
     if only_rooms:
         print(" ".join(sorted(rooms if paths is None else changed_rooms(paths, rooms))))
     elif patterns := unchanged(paths, rooms) if paths is not None else []:
+        print(f"Suites of which nothing changed since {commit} are left out: {', '.join(patterns)}", file=sys.stderr)
         print(f"^({'|'.join(patterns)})$")
 
 

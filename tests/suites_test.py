@@ -35,6 +35,8 @@ for suite, paths, expected in (
     ("Client.view_own", ["src/view/page/page.js"], True),
     ("Client.view_own", ["src/voxelize/leaf/leaf_column.cpp"], False),
     ("Client.view_own", ["tests/clients/view_own_test.py"], True),
+    ("Client.view_memory", ["tests/clients/page_memory.py"], True),
+    ("Studies", ["tests/clients/studies_test.py"], True),
     ("Client.slurm", ["scripts/slurm/film.sh"], True),
     ("Client.command_line", ["README.md"], True),
     ("House", ["README.md"], True),

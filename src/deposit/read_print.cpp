@@ -34,16 +34,19 @@ void refuseStrings(std::string_view name, const gcode::ReadOptions& options) {
                         name));
 }
 
-// What is told of level layers on a bed alone. Sag is part of presets of printers, and is left out with a warning.
-void leaveOutOnBelt(std::string_view name, bool travels, gcode::Toolpath& toolpath) {
-    gcode::DepositModel& deposit = toolpath.deposit;
+// What is told of level layers on a bed alone.
+void refuseOnBelt(std::string_view name, const gcode::DepositModel& deposit, bool travels) {
     const char* what = travels ? "travels are" : deposit.strings ? "strings are" : nullptr;
     if (what != nullptr)
         throw UsageError(fmt::format("{}: {} not told of prints on a belt; leave that out", name, what));
-    if (!(deposit.sag > 0)) return;
+}
+
+// The same of sag, which is part of presets of printers.
+void leaveOutSag(gcode::Toolpath& toolpath) {
+    if (!(toolpath.deposit.sag > 0)) return;
+    toolpath.deposit.sag = 0;
     toolpath.warnings.push_back(
         {"sag is left out: it is told of level layers, and those of a print on a belt lean", 1, 1});
-    deposit.sag = 0;
 }
 
 }  // namespace
@@ -77,17 +80,20 @@ PrintRead readPrint(std::string_view bytes, std::string_view name, const gcode::
     } else {
         print.toolpath = gcode::readToolpath(bytes, name, options);
     }
-    if (print.toolpath.belt_angle != 0) leaveOutOnBelt(name, travels != nullptr, print.toolpath);
-    const double sag_share = print.toolpath.deposit.sag;
+    if (print.toolpath.belt_angle != 0) {
+        refuseOnBelt(name, deposit, travels != nullptr);
+        leaveOutSag(print.toolpath);
+    }
+    const double sag_fraction = print.toolpath.deposit.sag;
     warnOfUnused(deposit, print.toolpath.warnings);
     if (!flow) {
-        if (sag_share > 0) print.sag = sagBeads(print.toolpath, sag_share);
+        if (sag_fraction > 0) print.sag = sagBeads(print.toolpath, sag_fraction);
         return print;
     }
     const FlowRecord record = flow->finish();
     std::optional<Sag> sag;
-    if (sag_share > 0) {
-        sag.emplace(print.toolpath, sag_share);
+    if (sag_fraction > 0) {
+        sag.emplace(print.toolpath, sag_fraction);
         print.sag = sag->report();
     }
     BeadCutter cutter(print.toolpath, true, record.parts.size() + record.spots.size() + record.strings.size());
