@@ -20,29 +20,6 @@ double reachOf(const voxelize::LayerStack& stack, const voxelize::Lattice& latti
     return thickest * (1 + 2 * voxelize::kWeldGap) + lattice.background();
 }
 
-// std::lower_bound of a column's ranks as an interpolation search: the list is rarely in the cache, and bisection would
-// touch more of it.
-std::size_t firstNotBelow(std::span<const std::uint32_t> ranks, std::uint32_t rank, std::size_t of_all) {
-    const std::size_t size = ranks.size();
-    const auto guess =
-        std::min(size - 1, static_cast<std::size_t>(static_cast<double>(size) * rank / static_cast<double>(of_all)));
-    // Ranks before `low` are below, ranks from `high` on are not.
-    std::size_t low = guess + 1;
-    std::size_t high = guess;
-    std::size_t step = 8;
-    if (ranks[guess] < rank) {
-        for (; step < size - low && ranks[low + step] < rank; step *= 2) low += step + 1;
-        high = std::min(size, low + step);
-    } else {
-        for (; step < high && ranks[high - step] >= rank; step *= 2) high -= step;
-        low = high - std::min(high, step);
-    }
-    const auto begin = ranks.begin();
-    return static_cast<std::size_t>(
-        std::lower_bound(begin + static_cast<std::ptrdiff_t>(low), begin + static_cast<std::ptrdiff_t>(high), rank) -
-        begin);
-}
-
 }  // namespace
 
 PrintLayout::PrintLayout(std::shared_ptr<const gcode::Toolpath> the_toolpath, std::span<const std::uint32_t> selection,
@@ -83,7 +60,8 @@ voxelize::LeafContent LeafMaker::make(const openvdb::Coord& origin, std::uint32_
     const std::span<const std::uint32_t> all = layout_.columns.bins()[*column];
     const std::uint32_t end_rank = stack.first_direct;
     const auto rankOf = [&](auto layer) { return layer != stack.layers.end() ? layer->first : end_rank; };
-    const auto from = all.begin() + static_cast<std::ptrdiff_t>(firstNotBelow(all, rankOf(first), stack.beads.size()));
+    const auto from =
+        all.begin() + static_cast<std::ptrdiff_t>(voxelize::firstNotBelow(all, rankOf(first), stack.beads.size()));
     auto to = from;
     while (to != all.end() && *to < rankOf(last)) ++to;
     std::span<const std::uint32_t> ranks(from, to);

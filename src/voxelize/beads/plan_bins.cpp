@@ -174,6 +174,27 @@ void refuseIfTooLarge(double bytes, std::size_t free_memory) {
 
 }  // namespace
 
+std::size_t firstNotBelow(std::span<const std::uint32_t> ranks, std::uint32_t rank, std::size_t of_all) {
+    const std::size_t size = ranks.size();
+    const auto guess =
+        std::min(size - 1, static_cast<std::size_t>(static_cast<double>(size) * rank / static_cast<double>(of_all)));
+    // Ranks before `low` are below, ranks from `high` on are not.
+    std::size_t low = guess + 1;
+    std::size_t high = guess;
+    std::size_t step = 8;
+    if (ranks[guess] < rank) {
+        for (; step < size - low && ranks[low + step] < rank; step *= 2) low += step + 1;
+        high = std::min(size, low + step);
+    } else {
+        for (; step < high && ranks[high - step] >= rank; step *= 2) high -= step;
+        low = high - std::min(high, step);
+    }
+    const auto begin = ranks.begin();
+    return static_cast<std::size_t>(
+        std::lower_bound(begin + static_cast<std::ptrdiff_t>(low), begin + static_cast<std::ptrdiff_t>(high), rank) -
+        begin);
+}
+
 PlanBins::PlanBins(const gcode::Toolpath& toolpath, const LayerStack& stack, const Lattice& lattice,
                    std::size_t free_memory) {
     if (stack.beads.empty()) return;

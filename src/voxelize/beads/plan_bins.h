@@ -101,4 +101,8 @@ private:
     HugeArray<std::uint32_t> ranks_;
 };
 
+/// std::lower_bound of a column's ranks, not empty, of a stack of `of_all` beads. An interpolation search: the list is
+/// rarely in the cache, and bisection would touch more of it.
+std::size_t firstNotBelow(std::span<const std::uint32_t> ranks, std::uint32_t rank, std::size_t of_all);
+
 }  // namespace stratum::voxelize

@@ -48,14 +48,13 @@ bool LeafColumn::gatherNodes(std::uint32_t layer, NodeValues SwellTile::*kind) {
     for (const SwellSource& source : swell_sources_) {
         const NodeValues& values = source.tile->*kind;
         if (!values.has(layer)) continue;
-        for (int j = source.first_j; j <= source.last_j; ++j)
-            for (int i = source.first_i; i <= source.last_i; ++i) {
-                const float value = values.of(layer, i & (kTileCells - 1), j & (kTileCells - 1));
-                if (!found && !(value > 0)) continue;
-                if (!found) std::fill(swell_nodes_.begin(), swell_nodes_.end(), 0.0F);
-                found = true;
-                swell_nodes_[nodeIndex(j - first_node_j_, nodes_i_, i - first_node_i_)] = value;
-            }
+        if (!found) std::fill(swell_nodes_.begin(), swell_nodes_.end(), 0.0F);
+        found = true;
+        const NodeValues::OfLayer of_layer = values.of(layer);
+        float* row = swell_nodes_.data() + nodeIndex(source.first_j - first_node_j_, nodes_i_, 0);
+        for (int j = source.first_j; j <= source.last_j; ++j, row += nodes_i_)
+            for (int i = source.first_i; i <= source.last_i; ++i)
+                row[i - first_node_i_] = of_layer.at(i & (kTileCells - 1), j & (kTileCells - 1));
     }
     return found;
 }
@@ -63,6 +62,7 @@ bool LeafColumn::gatherNodes(std::uint32_t layer, NodeValues SwellTile::*kind) {
 bool LeafColumn::valuesOf(std::uint32_t layer, NodeValues SwellTile::*kind, double scale, PlanField& values) {
     if (!gatherNodes(layer, kind)) return false;
     largest_node_ = *std::max_element(swell_nodes_.begin(), swell_nodes_.end());
+    if (!(largest_node_ > 0)) return false;
     betweenNodes(ramps_x_, ramps_y_, swell_nodes_, static_cast<float>(scale), values);
     return true;
 }

@@ -116,6 +116,7 @@ void LeafColumn::open(int i, int j, std::span<const std::uint32_t> ranks, std::u
     // Prefetch: the next beads are scattered in memory.
     constexpr std::size_t kFew = 128;
     const bool few = ranks.size() <= kFew;
+    std::uint32_t layer_end = 0;  // rank: of the last of column_layers_, so that only its first rank is looked up
     for (std::uint32_t e = 0; e < ranks.size(); ++e) {
         const std::uint32_t rank = ranks[e];
         if (stack_.beads[rank] >= end) continue;
@@ -123,8 +124,10 @@ void LeafColumn::open(int i, int j, std::span<const std::uint32_t> ranks, std::u
         if (rank >= stack_.first_direct) {
             const Extent& extent = stack_.extentOf(rank);
             direct_.push_back({extent.z_min - band_, extent.z_max + band_, rank});
-        } else if (column_layers_.empty() || column_layers_.back().layer != stack_.layer[rank]) {
-            column_layers_.push_back({stack_.layer[rank], e, e + 1, false});
+        } else if (rank >= layer_end) {
+            const std::uint32_t layer = stack_.layer[rank];
+            layer_end = stack_.layers[layer].last;
+            column_layers_.push_back({layer, e, e + 1, false});
         } else {
             column_layers_.back().last = e + 1;
         }

@@ -129,7 +129,8 @@ Swell SwellField::at(const gcode::Toolpath& toolpath, const LayerStack& stack, s
         if (from == nullptr) continue;
         const auto valueOf = [&](const NodeValues& values) {
             if (!values.has(layer)) return 0.0;
-            return static_cast<double>(values.of(layer, node_i - place.x * kTileCells, node_j - place.y * kTileCells));
+            return static_cast<double>(
+                values.of(layer).at(node_i - place.x * kTileCells, node_j - place.y * kTileCells));
         };
         const double weight = nodeShare(1 - std::abs(in_x - node_i)) * nodeShare(1 - std::abs(in_y - node_j));
         sum.out += weight * valueOf(from->out);

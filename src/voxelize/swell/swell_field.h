@@ -134,14 +134,20 @@ public:
 
     /// Whether a layer of the tile is not left out.
     bool has(std::uint32_t layer) const { return (present_ >> layer % kTileLayers & 1) != 0; }
+    /// Of one layer.
+    struct OfLayer {
+        const float* first = nullptr;
+        std::size_t stride = 0;  ///< from square to square
+
+        float at(int i, int j) const {
+            const int block = j / kBlock * (kTileCells / kBlock) + i / kBlock;
+            return first[static_cast<std::size_t>(block) * stride + nodeIndex(j % kBlock, kBlock, i % kBlock)];
+        }
+    };
     /// Of a layer that is there.
-    float of(std::uint32_t layer, int i, int j) const {
-        const auto layers = static_cast<std::size_t>(std::popcount(present_));
+    OfLayer of(std::uint32_t layer) const {
         const auto place = static_cast<std::size_t>(std::popcount(present_ & ((1U << layer % kTileLayers) - 1)));
-        const int block = j / kBlock * (kTileCells / kBlock) + i / kBlock;
-        const int within = j % kBlock * kBlock + i % kBlock;
-        return values_[(static_cast<std::size_t>(block) * layers + place) * kBlockNodes +
-                       static_cast<std::size_t>(within)];
+        return {values_.data() + place * kBlockNodes, static_cast<std::size_t>(std::popcount(present_)) * kBlockNodes};
     }
 
     bool operator==(const NodeValues&) const = default;

@@ -75,7 +75,11 @@ public:
 private:
     // mm^3 by how many layers below the plastic was laid.
     using Volumes = std::array<double, kUpLayers + 1>;
-    using NodeVolumes = std::vector<Volumes>;  // of the nodes that the tile owns; empty: none
+    struct NodeVolumes {
+        std::size_t node = 0;  // of those that the tile owns
+        Volumes volumes{};
+    };
+    using AllVolumes = std::vector<NodeVolumes>;  // nodes ascend; of the others nothing is left
 
     // The values of layers, from the lowest.
     struct Values {
@@ -102,17 +106,22 @@ private:
         const SpreadNodes& nodes = room_.nodes;
         constexpr NodeBox kOwn{kSpreadHalo, kSpreadHalo + kTileCells, kSpreadHalo, kSpreadHalo + kTileCells};
         const Spread& spread = room_.spreading.spread(nodes, room_.used, kOwn, of.most_rise);
-        NodeVolumes volumes = takeFromBelow(layer);
-        const NodeBox box = volumes.empty() ? kOwn.within(room_.used) : kOwn;
-        bool any_left = false;
+        const AllVolumes from_below = takeFromBelow(layer);
+        auto next_below = from_below.begin();
+        AllVolumes goes_on;
+        const NodeBox box = from_below.empty() ? kOwn.within(room_.used) : kOwn;
         for (int j = box.y0; j < box.y1; ++j)
             for (int i = box.x0; i < box.x1; ++i) {
                 const std::size_t n = nodeIndex(j, kSpreadEdge, i);
                 const std::size_t at = nodeIndex(j - kSpreadHalo, kTileCells, i - kSpreadHalo);
                 // What comes from below takes what room the layer's own surplus has left, and the rest goes on.
+                Volumes volumes{};
                 double below = 0;
-                if (!volumes.empty())
-                    for (const double volume : volumes[at]) below += volume;
+                if (next_below != from_below.end() && next_below->node == at) {
+                    volumes = next_below->volumes;
+                    for (const double volume : volumes) below += volume;
+                    ++next_below;
+                }
                 double moves_up = std::max(static_cast<double>(spread.left[n]) + below, 0.0);
                 const auto open = static_cast<double>(nodes.open[n]);
                 const bool crowned = open > 0 && of.crown > 0;
@@ -124,11 +133,10 @@ private:
                 };
                 const double given = place(spread.given[n], static_cast<double>(nodes.gain.back()[n]));
                 const double raised = place(spread.raised[n], open * of.most_rise);
-                any_left = any_left || moves_up > 0;
-                if (moves_up > 0 || below > 0) {
-                    if (volumes.empty()) volumes.resize(NodeValues::kNodes);
-                    volumes[at][0] = std::max(static_cast<double>(spread.left[n]), 0.0);
-                    keepFarthest(moves_up, volumes[at]);
+                if (moves_up > 0) {
+                    volumes[0] = std::max(static_cast<double>(spread.left[n]), 0.0);
+                    keepFarthest(moves_up, volumes);
+                    goes_on.push_back({at, volumes});
                 }
                 if (!own) continue;
                 out_.set(layer, at, swellThatGains(nodes, n, given));
@@ -136,7 +144,7 @@ private:
                 rise_.set(layer, at, std::min(raised / open, of.most_rise));
                 if (crowned) open_.set(layer, at, openShare(layer, at, open));
             }
-        if (any_left) up_[layer + kUpLayers - own_from_] = std::move(volumes);
+        up_[layer + kUpLayers - own_from_] = std::move(goes_on);
     }
 
     // Of what is at a node, that from the nearest layers has found a place first: what lies farther below has no
@@ -149,20 +157,35 @@ private:
     }
 
     // What the layers on which this one lies have left at each node, if it was laid near enough.
-    NodeVolumes takeFromBelow(std::uint32_t layer) {
-        NodeVolumes sum;
+    AllVolumes takeFromBelow(std::uint32_t layer) {
+        AllVolumes sum;
         const auto first = std::lower_bound(stack_.welds.begin(), stack_.welds.end(), layer,
                                             [](const Weld& weld, std::uint32_t upper) { return weld.upper < upper; });
         for (auto weld = first; weld != stack_.welds.end() && weld->upper == layer; ++weld) {
             const std::uint32_t up = layer - weld->lower;
             if (up > kUpLayers || weld->lower + kUpLayers < own_from_) continue;
             // Another layer that lies on the same one finds nothing.
-            const NodeVolumes left = std::exchange(up_[weld->lower + kUpLayers - own_from_], {});
-            if (left.empty()) continue;
-            sum.resize(left.size());
-            for (std::size_t n = 0; n < left.size(); ++n)
-                for (std::size_t below = up; below <= kUpLayers; ++below) sum[n][below] += left[n][below - up];
+            AllVolumes left = std::exchange(up_[weld->lower + kUpLayers - own_from_], {});
+            for (NodeVolumes& of : left) {
+                std::move_backward(of.volumes.begin(), of.volumes.end() - up, of.volumes.end());
+                std::fill_n(of.volumes.begin(), up, 0.0);
+            }
+            sum = sum.empty() ? std::move(left) : sumOf(sum, left);
         }
+        return sum;
+    }
+
+    static AllVolumes sumOf(const AllVolumes& a, const AllVolumes& b) {
+        AllVolumes sum;
+        auto in_a = a.begin();
+        for (const NodeVolumes& of : b) {
+            while (in_a != a.end() && in_a->node < of.node) sum.push_back(*in_a++);
+            sum.push_back(of);
+            if (in_a == a.end() || in_a->node != of.node) continue;
+            for (std::size_t n = 0; n < of.volumes.size(); ++n) sum.back().volumes[n] += in_a->volumes[n];
+            ++in_a;
+        }
+        sum.insert(sum.end(), in_a, a.end());
         return sum;
     }
 
@@ -195,7 +218,7 @@ private:
     const std::uint32_t own_from_;  // layer
     const SumsAround& around_;
     const SumsAround* below_;
-    std::array<NodeVolumes, kUpLayers + kTileLayers> up_;  // what has no place, by layer
+    std::array<AllVolumes, kUpLayers + kTileLayers> up_;  // what has no place, by layer
     SpreadRoom& room_ = roomOfThread();
     Values out_, rise_, open_;
 };

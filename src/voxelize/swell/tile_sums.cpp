@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <memory>
@@ -187,8 +188,14 @@ public:
         const int steps = std::max(static_cast<int>(std::ceil(length / kStep)), 1);
         const double part = along / (steps * static_cast<double>(kAcross.size()));
         const auto [from, to] = stepsInTile(bead, length, width, steps);
+        const bool line = path.straight() && path.length() > 0;
+        const Place start = placeAt(path, 0, length);
         for (int n = from; n < to; ++n) {
-            const Place place = placeAt(path, (n + 0.5) / steps, length);
+            const double t = (n + 0.5) / steps;
+            // Of a line the direction is worked out once.
+            const double mm = t * length;
+            const Place place = line ? Place{start.x + mm * start.ux, start.y + mm * start.uy, start.ux, start.uy}
+                                     : placeAt(path, t, length);
             for (const double side : kAcross) {
                 const double aside = side * width;
                 addPoint(place.x - aside * place.uy, place.y + aside * place.ux, part, sums);
@@ -327,6 +334,27 @@ std::unique_ptr<TileSums::Layer> keep(const WholeLayer& sums) {
     return kept;
 }
 
+// Ranks of a range: each once, whatever was added how often.
+class RankSet {
+public:
+    RankSet(std::uint32_t first, std::uint32_t last) : first_(first), words_((last - first + 63) / 64) {}
+
+    void add(std::span<const std::uint32_t> ranks) {
+        for (const std::uint32_t rank : ranks) words_[(rank - first_) / 64] |= std::uint64_t{1} << (rank - first_) % 64;
+    }
+    // In ascending order.
+    template <typename Visit>
+    void forEach(Visit visit) const {
+        for (std::size_t n = 0; n < words_.size(); ++n)
+            for (std::uint64_t left = words_[n]; left != 0; left &= left - 1)
+                visit(first_ + static_cast<std::uint32_t>(64 * n) + static_cast<std::uint32_t>(std::countr_zero(left)));
+    }
+
+private:
+    const std::uint32_t first_;
+    std::vector<std::uint64_t> words_;
+};
+
 // Which layers the sums of a tile are made of, and the ranks of their beads. Of one tile.
 class TileLayers {
 public:
@@ -337,14 +365,17 @@ public:
           last_(static_cast<std::uint32_t>(std::min<std::size_t>(first_ + kTileLayers, stack.layers.size()))) {}
 
     bool owns(std::uint32_t layer) const { return layer >= first_ && layer < last_; }
+    std::uint32_t firstRank() const { return stack_.layers[first_].first; }
+    std::uint32_t lastRank() const { return stack_.layers[last_ - 1].last; }
     bool needs(std::uint32_t layer) const {
         return owns(layer) || std::binary_search(others_.begin(), others_.end(), layer);
     }
     // Of a column's ranks those of the tile's own layers; ranks ascend with their layers.
     std::span<const std::uint32_t> ownOf(std::span<const std::uint32_t> ranks) const {
-        const auto from = std::lower_bound(ranks.begin(), ranks.end(), stack_.layers[first_].first);
+        const auto first = firstNotBelow(ranks, firstRank(), stack_.beads.size());
+        const auto from = ranks.begin() + static_cast<std::ptrdiff_t>(first);
         auto to = from;
-        while (to != ranks.end() && *to < stack_.layers[last_ - 1].last) ++to;
+        while (to != ranks.end() && *to < lastRank()) ++to;
         return {from, to};
     }
     // Of all layers that are needed; some between them may not be. `own`: of ownOf().
@@ -387,7 +418,7 @@ TileSums sumTile(const gcode::Toolpath& toolpath, const LayerStack& stack, const
         return sums;
     };
     for (WholeLayer& sums : whole) sums.used = false;
-    std::vector<std::uint32_t> feeds;  // ranks of the tile's own beads
+    RankSet feeds(own.firstRank(), own.lastRank());
     std::vector<OpenTop> tops;
     std::vector<TopFields> fields;  // of tops, where they have crowns
     PlanField highest;
@@ -397,7 +428,7 @@ TileSums sumTile(const gcode::Toolpath& toolpath, const LayerStack& stack, const
             if (bin == PlanBins::kNone) continue;
             const std::span<const std::uint32_t> near = own.ownOf(bins[bin]);
             if (near.empty()) continue;
-            feeds.insert(feeds.end(), near.begin(), near.end());
+            feeds.add(near);
             column.open(bins.originI(bin), bins.originJ(bin), own.neededOf(bins[bin], near),
                         std::numeric_limits<std::uint32_t>::max());
             const int first_node = kSquareCells * (cj * kNodes + ci);
@@ -426,9 +457,7 @@ TileSums sumTile(const gcode::Toolpath& toolpath, const LayerStack& stack, const
             }
         }
     const Feeder feeder(toolpath, stack, place);
-    std::sort(feeds.begin(), feeds.end());
-    feeds.erase(std::unique(feeds.begin(), feeds.end()), feeds.end());
-    for (const std::uint32_t rank : feeds) feeder.feed(rank, sumsOf(stack.layer[rank]));
+    feeds.forEach([&](std::uint32_t rank) { feeder.feed(rank, sumsOf(stack.layer[rank])); });
     TileSums tile;
     for (std::size_t n = 0; n < whole.size(); ++n)
         if (whole[n].used) tile.layers[n] = keep(whole[n]);
