@@ -9,6 +9,8 @@
 #include "gcode/toolpath/toolpath.h"
 #include "voxelize/beads/bead_field.h"
 
+#include <algorithm>
+#include <cmath>
 #include <optional>
 
 namespace stratum::voxelize {
@@ -20,6 +22,13 @@ struct LocalLine {
     float ux, uy, lo, hi;
     float half_flat;
     bool spans;  ///< the segment's ends lie beyond all samples of the column, so they can be ignored
+
+    /// From the middle of the column to the flat; below 0 within it.
+    double fromMiddle() const {
+        const double past = std::max({static_cast<double>(lo), -static_cast<double>(hi), 0.0});
+        return std::sqrt(static_cast<double>(n0) * static_cast<double>(n0) + past * past) -
+               static_cast<double>(half_flat);
+    }
 };
 
 /// A straight path whose half flat changes linearly: flat + slope (s - flat_at) at the position s. The nearest section

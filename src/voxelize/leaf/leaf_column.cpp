@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <tuple>
 
 namespace stratum::voxelize {
 namespace {
@@ -252,7 +253,15 @@ void LeafColumn::planPaths(const GrooveRule* rule) {
     near_count_ = 0;
     const double half_extent = half_extent_ * scale_;
     const auto move = [&](auto& paths, const auto& lineOf, const auto& planOf) {
+        std::size_t left = rule != nullptr ? kMostFilling : paths.size();
+        if (paths.size() > left) {
+            const auto nearness = [&](const LocalLine& of) { return std::tuple{of.fromMiddle(), of.n0, of.ux, of.lo}; };
+            std::nth_element(paths.begin(), paths.begin() + kMostFilling, paths.end(),
+                             [&](const auto& a, const auto& b) { return nearness(lineOf(a)) < nearness(lineOf(b)); });
+        }
         std::erase_if(paths, [&](const auto& path) {
+            if (left == 0) return false;
+            --left;
             const bool may_fill = rule == nullptr || mayFill(lineOf(path), *rule, half_extent);
             if (may_fill) planOf(grid_, path, nextNear());
             return may_fill;

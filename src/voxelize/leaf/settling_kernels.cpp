@@ -239,11 +239,8 @@ GrooveRule::GrooveRule(const SettlingCurve& curve, double the_radius)
       weld_level(static_cast<float>(curve.weldLevel() * the_radius)) {}
 
 bool mayFill(const LocalLine& line, const GrooveRule& rule, double half_extent) {
-    const double past = std::max({static_cast<double>(line.lo), -static_cast<double>(line.hi), 0.0});
-    const double from_path = std::sqrt(static_cast<double>(line.n0) * static_cast<double>(line.n0) + past * past);
-    const double from_middle = from_path - static_cast<double>(line.half_flat);
     constexpr double kSlack = 1e-5;  // of floats
-    return from_middle * (1 - kSlack) < 2 * static_cast<double>(rule.radius) + half_extent * std::sqrt(2.0);
+    return line.fromMiddle() * (1 - kSlack) < 2 * static_cast<double>(rule.radius) + half_extent * std::sqrt(2.0);
 }
 
 void planOfLine(const ColumnGrid& grid, const LocalLine& line, BeadPlan& out) {
