@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <optional>
 
 namespace stratum::voxelize {
@@ -65,5 +66,13 @@ LocalTaper localTaper(const gcode::Bead& bead, const EndFlats& flats, double x, 
                       double scale);
 /// `path`: an arc.
 LocalArc localArc(const gcode::PlanPath& path, double half_flat, double x, double y, double half_extent, double scale);
+
+/// Beads of a column are scattered in memory: asks for one that is used soon.
+inline void prefetchBead(const gcode::Toolpath& toolpath, std::uint32_t index) {
+    const gcode::Bead& bead = toolpath.beads[index];
+    __builtin_prefetch(&bead);
+    __builtin_prefetch(&bead.width);  // most beads lie across two lines of the cache
+    if (!toolpath.flow.empty()) __builtin_prefetch(&toolpath.flow[index]);
+}
 
 }  // namespace stratum::voxelize

@@ -42,6 +42,21 @@ void LeafColumn::findSwellTiles(std::uint32_t z) {
     swell_tiles_z_ = z;
 }
 
+void LeafColumn::prefetchSwell(std::uint32_t layer) {
+    findSwellTiles(layer / kTileLayers);
+    constexpr int kBlock = NodeValues::kBlock;
+    const auto blockOf = [](int node) { return node & (kTileCells - 1) & -kBlock; };
+    for (const SwellSource& source : swell_sources_)
+        for (const auto kind : {&SwellTile::out, &SwellTile::rise, &SwellTile::open}) {
+            const NodeValues& values = source.tile->*kind;
+            if (!values.has(layer)) continue;
+            const NodeValues::OfLayer of_layer = values.of(layer);
+            for (int j = blockOf(source.first_j); j <= blockOf(source.last_j); j += kBlock)
+                for (int i = blockOf(source.first_i); i <= blockOf(source.last_i); i += kBlock)
+                    __builtin_prefetch(of_layer.block(i, j));
+        }
+}
+
 bool LeafColumn::gatherNodes(std::uint32_t layer, NodeValues SwellTile::*kind) {
     findSwellTiles(layer / kTileLayers);
     bool found = false;

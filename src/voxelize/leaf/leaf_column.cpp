@@ -114,14 +114,13 @@ void LeafColumn::open(int i, int j, std::span<const std::uint32_t> ranks, std::u
     by_layer_.clear();
     welds_.clear();
     half_heights_.clear();
-    // Prefetch: the next beads are scattered in memory.
     constexpr std::size_t kFew = 128;
     const bool few = ranks.size() <= kFew;
     std::uint32_t layer_end = 0;  // rank: of the last of column_layers_, so that only its first rank is looked up
     for (std::uint32_t e = 0; e < ranks.size(); ++e) {
         const std::uint32_t rank = ranks[e];
         if (stack_.beads[rank] >= end) continue;
-        if (few) __builtin_prefetch(&toolpath_.beads[stack_.beads[rank]]);
+        if (few) prefetchBead(toolpath_, stack_.beads[rank]);
         if (rank >= stack_.first_direct) {
             const Extent& extent = stack_.extentOf(rank);
             direct_.push_back({extent.z_min - band_, extent.z_max + band_, rank});
@@ -170,9 +169,8 @@ void LeafColumn::gatherPaths(const ColumnLayer& source, bool with_ranks) {
     arc_ids_.clear();
     for (std::uint32_t e = source.first; e < source.last; ++e) {
         const std::uint32_t rank = ranks_[e];
-        // Prefetch: the beads of a column are scattered in memory.
         constexpr std::uint32_t kAhead = 6;
-        if (e + kAhead < ranks_.size()) __builtin_prefetch(&toolpath_.beads[stack_.beads[ranks_[e + kAhead]]]);
+        if (e + kAhead < ranks_.size()) prefetchBead(toolpath_, stack_.beads[ranks_[e + kAhead]]);
         if (stack_.beads[rank] >= end_) continue;
         const gcode::Bead& bead = toolpath_.beads[stack_.beads[rank]];
         const double half_flat = 0.5 * static_cast<double>(bead.width) - layer.inset;
@@ -199,6 +197,7 @@ void LeafColumn::minimumOfPaths(PlanField& d, PlanOwners* owners) const {
 
 void LeafColumn::fillLayer(const ColumnLayer& source, PlanLayer& plan) {
     const Layer& layer = stack_.layers[source.layer];
+    if (with_swell_) prefetchSwell(source.layer);
     gatherPaths(source, false);
     plan.layer = source.layer;
     plan.center_z = layer.center_z;

@@ -168,6 +168,8 @@ private:
     void placeSwell();
     /// Sets swell_sources_. `z`: as of TilePlace.
     void findSwellTiles(std::uint32_t z);
+    /// Asks for what swell() and raise() of a layer need.
+    void prefetchSwell(std::uint32_t layer);
     /// One kind of values of a layer at the nodes of the open column, into swell_nodes_. False if all are 0.
     bool gatherNodes(std::uint32_t layer, NodeValues SwellTile::*kind);
     /// Those values at the samples, times `scale`. False if all are 0.

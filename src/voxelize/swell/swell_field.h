@@ -139,10 +139,11 @@ public:
         const float* first = nullptr;
         std::size_t stride = 0;  ///< from square to square
 
-        float at(int i, int j) const {
-            const int block = j / kBlock * (kTileCells / kBlock) + i / kBlock;
-            return first[static_cast<std::size_t>(block) * stride + nodeIndex(j % kBlock, kBlock, i % kBlock)];
+        /// Of the square that has a node.
+        const float* block(int i, int j) const {
+            return first + nodeIndex(j / kBlock, kTileCells / kBlock, i / kBlock) * stride;
         }
+        float at(int i, int j) const { return block(i, j)[nodeIndex(j % kBlock, kBlock, i % kBlock)]; }
     };
     /// Of a layer that is there.
     OfLayer of(std::uint32_t layer) const {
