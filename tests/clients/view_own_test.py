@@ -235,19 +235,28 @@ def quick_colors():
                   await window.vdbviewDrawn();
                   const [renderer, view, still] = last;
                   // Coarse beads that are seen are found by a look at the picture.
-                  for (let n = 0; n < 12; ++n) { renderer.drawQuick(...view); renderer.note(); renderer.lookFor(...view, 32); }
+                  for (let n = 0; n < 12; ++n) { renderer.drawQuick(...view); renderer.note(); renderer.lookFor(32); }
                   renderer.drawQuick(...view);
                   const quick = small(renderer.canvas);
+                  const pixels = () => {
+                    const context = new OffscreenCanvas(...renderer.size).getContext("2d");
+                    context.drawImage(renderer.canvas, 0, 0);
+                    return new Uint32Array(context.getImageData(0, 0, ...renderer.size).data.buffer);
+                  };
+                  const known = pixels();
+                  renderer.drawQuick(...view, false);
+                  const straight = pixels(), others = known.filter((v, n) => v !== straight[n]).length / known.length;
                   let [count, sum] = [0, 0];
                   for (let n = 0; n < still.length; n += 4) {
                     if (Math.max(...[0, 1, 2].map((k) => Math.abs(still[n + k] - still[n + (k + 1) % 3]))) < 40) continue; // the ground is grey
                     ++count;
                     sum += Math.max(...[0, 1, 2].map((k) => Math.abs(still[n + k] - quick[n + k])));
                   }
-                  done({ count, off: sum / count });
+                  done({ count, off: sum / count, others });
                 });""")
             print(f"a quick picture of {view}: {found}")
             check(found["count"] > 500 and found["off"] < most, f"colours of a quick picture: {found}")
+            check(found["others"] < 1e-3, f"drawn on the canvas itself it is the same: {found}")
 
 
 # Of a view whose finished picture is of normals: how many pixels a place that is print in that picture, but not in the page's
@@ -263,7 +272,7 @@ const done = arguments[0];
   image.src = await window.vdbviewDrawn();
   BeadRenderer.prototype.light = light;
   const [renderer, view] = last, [width, height] = renderer.size;
-  for (let n = 0; n < 12; ++n) { renderer.drawQuick(...view); renderer.note(); renderer.lookFor(...view, 32); }
+  for (let n = 0; n < 12; ++n) { renderer.drawQuick(...view); renderer.note(); renderer.lookFor(32); }
   renderer.drawQuick(...view);
   const ids = renderer.ids(0, 0, width, height);
   const bitmap = await createImageBitmap(window.vdbviewFinal);
