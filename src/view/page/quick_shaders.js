@@ -11,7 +11,7 @@ ${bead(kinds)}
 ${STAGE}
 ${COLORED}
 uniform vec2 size;          // pixels
-uniform usampler2D ends;    // the last bead that one stands for; of an arc, the number of its ribbons
+uniform usampler2D ends;    // see CoarseBeads
 uniform float least;        // mm: half of how wide they are at least
 uniform uint count;
 // Of each end: where it is on the picture times its depth, that depth, the colour of the middle and up to where the ribbon has
@@ -26,8 +26,18 @@ uint tint(vec3 color, float level) {
   uvec4 bytes = uvec4(clamp(vec4(color, level), 0.0, 1.0) * 255.0 + 0.5);
   return bytes.x | bytes.y << 8 | bytes.z << 16 | bytes.w << 24;
 }
-// \`way\`: of the path there; \`end\`: 1 or -1 where the bead itself begins or ends, 0 between two ribbons of it.
-void cross_section(Bead b, uint n, vec3 p, vec3 path, float half_flat, float end, bool side_by_side, out uvec4 place, out uvec4 side) {
+// Of ways that meet, as the eye sees them: the one between them, twice the cosine of their half angle long; 0 if they turn by
+// more than about 75 degrees, where round ends are nearer.
+vec3 between(vec3 a, vec3 b, vec3 view) {
+  a -= dot(a, view) * view;
+  b -= dot(b, view) * view;
+  if (min(dot(a, a), dot(b, b)) < 1e-8) return vec3(0.0);
+  a = normalize(a);
+  b = normalize(b);
+  return dot(a, b) > 0.25 ? a + b : vec3(0.0);
+}
+// \`path\`: its way there; \`beyond\`: the way of what goes on there, or 0; \`end\`: 1 or -1 where it would end, 0 between two ribbons of it.
+void cross_section(Bead b, uint n, vec3 p, vec3 path, vec3 beyond, float half_flat, float end, bool side_by_side, out uvec4 place, out uvec4 side) {
   vec3 view = normalize(p);
   vec3 side_way = cross(path, view);
   bool end_on = dot(side_way, side_way) < 1e-8;
@@ -36,11 +46,18 @@ void cross_section(Bead b, uint n, vec3 p, vec3 path, float half_flat, float end
   vec3 along = cross(view, side_way);
   float wide = reach(b, half_flat, side_way);
   float drawn = max(wide, max(least, 1.5 * dot(p, forward) * slope.y / size.y)); // at least three quarters of a pixel
+  float seen = wide / drawn;  // no grain of what is smaller than that
+  vec3 joint = between(path, beyond, view), border = side_way * drawn;
+  if (joint != vec3(0.0)) {
+    // A longer tip would stand out of the round end.
+    border = normalize(cross(joint, view)) * drawn * min(2.0 / length(joint), 1.1);
+    end = 0.0;
+  }
   // Ends are round: a straight one of the same area is nearer.
   p += along * end * 0.8 * reach(b, half_flat, along) - view * reach(b, half_flat, view);
   float depth = dot(p, forward);
   vec2 at = vec2(dot(p, right), dot(p, up)) / slope;
-  vec2 beside = drawn * (vec2(dot(side_way, right), dot(side_way, up)) / slope - at * dot(side_way, forward) / max(depth, 1e-3));
+  vec2 beside = vec2(dot(border, right), dot(border, up)) / slope - at * dot(border, forward) / max(depth, 1e-3);
   // Of what lies side by side one sees the flats, of what lies on others the round sides, too.
   vec3 facing = cross(side_way, along_path);
   facing *= sign(-dot(facing, view) + 1e-9);
@@ -48,10 +65,42 @@ void cross_section(Bead b, uint n, vec3 p, vec3 path, float half_flat, float end
   vec3 body = bodyOf(n); // which the surroundings darken by about 0.92
   vec3 middle = shadeOf(body, facing, view, 0.92 * openness(facing));
   vec3 low = normalize(0.5 * facing - side_way), high = normalize(0.5 * facing + side_way);
-  float seen = wide / drawn;  // no grain of what is smaller than that
   place = uvec4(floatBitsToUint(vec3(at, depth)), tint(middle, half_flat * length(side_way.xy) / wide));
   side = uvec4(floatBitsToUint(beside), tint(mix(middle, shadeOf(body, low, view, 0.92 * openness(low)), seen), 0.0),
                tint(mix(middle, shadeOf(body, high, view, 0.92 * openness(high)), seen), 0.0));
+}
+vec3 stepsOf(uvec4 w) { return grain * (vec3(w.y & 65535u, w.y >> 16u, w.z >> 16u) - vec3(w.x & 65535u, w.x >> 16u, w.z & 65535u)); }
+vec3 stepsTo(uvec4 a, uvec4 b) { return stepsOf(uvec4(a.x, b.y, a.z & 65535u | b.z & 0xffff0000u, 0u)); } // from where a begins to where b ends
+bool goesOn(uvec4 a, uvec4 b) { return a.y == b.x && a.z >> 16u == (b.z & 65535u); }
+#ifdef ARCS
+bool tangent(uint n, float share, out vec3 way) {
+  Bead b = beadAt(n);
+  if (b.arc.z == 0.0) return false;
+  vec2 out_way = pointOf(b, share).xy - b.start.xy - b.arc.xy;
+  way = vec3(sign(b.sweep) * vec2(-out_way.y, out_way.x), b.climb / abs(b.sweep));
+  return true;
+}
+#endif
+// The ways of what comes before the bead n and of what goes on after the bead \`last\`, or 0.
+vec3 wayBefore(uint n) {
+  if (n == 0u || shownAs(n - 1u) == 0u) return vec3(0.0);
+  uvec4 w = row(beads, n - 1u);
+  if (!goesOn(w, row(beads, n))) return vec3(0.0);
+#ifdef ARCS
+  vec3 way;
+  if (tangent(n - 1u, 1.0, way)) return way;
+#endif
+  return stepsTo((w.w & 4096u) != 0u ? w : row(beads, min(row(ends, n - 1u).x, n - 1u)), w);
+}
+vec3 wayAfter(uint last) {
+  if (last + 1u >= total || shownAs(last + 1u) == 0u) return vec3(0.0);
+  uvec4 w = row(beads, last + 1u);
+  if (!goesOn(row(beads, last), w)) return vec3(0.0);
+#ifdef ARCS
+  vec3 way;
+  if (tangent(last + 1u, 0.0, way)) return way;
+#endif
+  return stepsTo(w, (w.w & 4096u) != 0u ? w : row(beads, min(row(ends, last + 1u).x, end - 1u)));
 }
 void main() {
   from_place = from_side = to_place = to_side = uvec4(0u);
@@ -87,25 +136,26 @@ void main() {
 #ifdef ARCS
   // Two ribbons of an arc have the corners between them in common.
   if (b.arc.z > 0.0) {
-    vec2 center = b.start.xy + b.arc.xy;
-    float turn = sign(b.sweep), climb = b.climb / abs(b.sweep);
-    from_path = vec3(turn * vec2(center.y - from.y, from.x - center.x), climb);
-    to_path = vec3(turn * vec2(center.y - to.y, to.x - center.x), climb);
+    tangent(n, shares.x, from_path);
+    tangent(n, shares.y, to_path);
     begins = ribbon == 0u;
     stops = ribbon == ribbons - 1u;
   }
 #endif
+  vec3 before = begins ? wayBefore(n) : vec3(0.0), after = stops ? wayAfter(last) : vec3(0.0);
   float past_from = dot(cut.xyz, from) - cut.w, past_to = dot(cut.xyz, to) - cut.w;
   if (cut.xyz != vec3(0.0) && max(past_from, past_to) > 0.0) {
     if (min(past_from, past_to) > 0.0) return;
     vec3 border = mix(from, to, past_from / (past_from - past_to));
     if (past_from > 0.0) from = border;
     else to = border;
+    if (past_from > 0.0) before = vec3(0.0);
+    else after = vec3(0.0);
     begins = begins || past_from > 0.0;
     stops = stops || past_to > 0.0;
   }
-  cross_section(b, n, from, from_path, b.flat0, begins ? -1.0 : 0.0, shown_as == 2u, from_place, from_side);
-  cross_section(b, n, to, to_path, b.flat1, stops ? 1.0 : 0.0, shown_as == 2u, to_place, to_side);
+  cross_section(b, n, from, from_path, before, b.flat0, begins ? -1.0 : 0.0, shown_as == 2u, from_place, from_side);
+  cross_section(b, n, to, to_path, after, b.flat1, stops ? 1.0 : 0.0, shown_as == 2u, to_place, to_side);
 }`;
 /** The colours of a straight ribbon are those of its beginning, those of an arc change along it. */
 const alongArcs = (kinds) => (kinds.arcs ? "smooth" : "flat");
