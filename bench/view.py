@@ -24,7 +24,7 @@ import time
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.dirname(os.path.abspath(__file__))), "tests/clients"))
 from chromium import browser
-from page_memory import ORBIT, memory_of, until
+from page_memory import ORBIT, memory_of, picture
 from viewer_socket import resident, soak
 
 SLIDE = """
@@ -74,16 +74,16 @@ def measure(folder, path, seconds, page):
     begin = time.time()
     process, url = start(folder, path)
     page.get(url + "?stream")
-    until(page, "moving")
+    picture(page, "moving")
     shown = page.execute_script("return performance.timeOrigin + window.vdbviewLog[0].at") / 1000 - begin
-    until(page, "final")
+    picture(page, "final")
     plain = memory(process)
     command = shlex.split(page.execute_script("return document.getElementById('command').textContent"))
     before = processor(process)
     time.sleep(5)
     idle = (processor(process) - before) / 5
     log = page.execute_async_script(ORBIT, seconds)
-    rough, final = until(page, "rough"), until(page, "final")
+    rough, final = picture(page, "rough"), picture(page, "final")
     slid = page.execute_async_script(SLIDE)
     process.terminate()
     process.wait()
@@ -110,8 +110,8 @@ def turning(folder, path, seconds, page, rounds):
         for query, rates in found.items():
             page.get("about:blank")
             page.get(url + query)
-            until(page, "moving" if query else "own")
-            until(page, "final")
+            picture(page, "moving" if query else "own")
+            picture(page, "final")
             log = page.execute_async_script(ORBIT, seconds)
             rates.append((len(log) / seconds, quantile([e["width"] * e["height"] for e in log], 0.5)))
     process.terminate()

@@ -1,6 +1,8 @@
 """Headless Chromium, driven by Debian's python3-selenium."""
 
 import shutil
+import sys
+import time
 
 from selenium import webdriver
 from selenium.webdriver.chrome.options import Options
@@ -17,3 +19,15 @@ def browser(profile, width, height, script_seconds):
     page = webdriver.Chrome(service=Service(shutil.which("chromedriver")), options=options)
     page.set_script_timeout(script_seconds)
     return page
+
+
+def until(page, condition, text, seconds=150):
+    """Waits until an expression of JavaScript is true on a viewer's page; returns its value."""
+    end = time.monotonic() + seconds
+    while time.monotonic() < end:
+        value = page.execute_script(f"return {condition}")
+        if value:
+            return value
+        time.sleep(0.05)
+    print(page.execute_script("return [window.vdbviewLog?.slice(-5), window.told, document.body.innerText]"), page.get_log("browser"))
+    sys.exit(f"FAILED: {text}: not within {seconds} s")

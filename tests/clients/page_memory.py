@@ -2,8 +2,9 @@
 
 import os
 import re
-import sys
 import time
+
+from chromium import until
 
 ORBIT = """
 const done = arguments[1], seconds = arguments[0], c = document.getElementById('picture'), b = c.getBoundingClientRect();
@@ -24,14 +25,9 @@ const tick = () => {
 requestAnimationFrame(tick);"""
 
 
-def until(page, kind, seconds=300):
-    end = time.monotonic() + seconds
-    while time.monotonic() < end:
-        found = page.execute_script(f"return (window.vdbviewLog ?? []).find((e) => e.kind === '{kind}')")
-        if found:
-            return found
-        time.sleep(0.02)
-    sys.exit(f"no {kind} picture within {seconds} s")
+def picture(page, kind):
+    """Waits for a picture of that kind in the page's log, and returns its entry."""
+    return until(page, f"(window.vdbviewLog ?? []).find((e) => e.kind === '{kind}')", f"a picture of the kind {kind}", 300)
 
 
 def shares(page):
@@ -67,11 +63,11 @@ def memory_of(page, url, seconds):
     time.sleep(2)
     moments = [shares(page)]
     page.get(url)
-    until(page, "final")
+    picture(page, "final")
     moments.append(shares(page))
     page.execute_script("const s = document.getElementById('color-by'); s.value = 'speed'; s.dispatchEvent(new Event('change'))")
     page.execute_async_script(ORBIT, seconds)
-    until(page, "final")
+    picture(page, "final")
     moments.append(shares(page))
     page.execute_cdp_cmd("HeapProfiler.collectGarbage", {})
     time.sleep(1)

@@ -215,8 +215,8 @@ def written_anew():
                 file.write("; written anew\n")
             until(f"window.programs >= {6 * n} && document.body.dataset.moving === 'own'", "it is drawn anew")
             live.append(js("return window.live.size"))
-        # The program of quick pictures and the table of moves come when a slow machine needs them or has read them.
-        late = 2
+        # The two programs of quick pictures and the table of moves come when a slow machine needs them or has read them.
+        late = 3
         check(live[0] > late and max(live) - min(live) <= late, f"as many objects as before: {live}")
 
 

@@ -5,6 +5,7 @@ import os
 import shutil
 import tempfile
 import time
+from math import cos, radians, sin
 from urllib.parse import quote
 
 from run_tools import check, corpus, gcode, skip_without
@@ -235,19 +236,28 @@ def quick_colors():
                   await window.vdbviewDrawn();
                   const [renderer, view, still] = last;
                   // Coarse beads that are seen are found by a look at the picture.
-                  for (let n = 0; n < 12; ++n) { renderer.drawQuick(...view); renderer.note(); renderer.lookFor(...view, 32); }
+                  for (let n = 0; n < 12; ++n) { renderer.drawQuick(...view); renderer.note(); renderer.lookFor(32); }
                   renderer.drawQuick(...view);
                   const quick = small(renderer.canvas);
+                  const pixels = () => {
+                    const context = new OffscreenCanvas(...renderer.size).getContext("2d");
+                    context.drawImage(renderer.canvas, 0, 0);
+                    return new Uint32Array(context.getImageData(0, 0, ...renderer.size).data.buffer);
+                  };
+                  const known = pixels();
+                  renderer.drawQuick(...view, false);
+                  const straight = pixels(), others = known.filter((v, n) => v !== straight[n]).length / known.length;
                   let [count, sum] = [0, 0];
                   for (let n = 0; n < still.length; n += 4) {
                     if (Math.max(...[0, 1, 2].map((k) => Math.abs(still[n + k] - still[n + (k + 1) % 3]))) < 40) continue; // the ground is grey
                     ++count;
                     sum += Math.max(...[0, 1, 2].map((k) => Math.abs(still[n + k] - quick[n + k])));
                   }
-                  done({ count, off: sum / count });
+                  done({ count, off: sum / count, others });
                 });""")
             print(f"a quick picture of {view}: {found}")
             check(found["count"] > 500 and found["off"] < most, f"colours of a quick picture: {found}")
+            check(found["others"] < 1e-3, f"drawn on the canvas itself it is the same: {found}")
 
 
 # Of a view whose finished picture is of normals: how many pixels a place that is print in that picture, but not in the page's
@@ -263,7 +273,7 @@ const done = arguments[0];
   image.src = await window.vdbviewDrawn();
   BeadRenderer.prototype.light = light;
   const [renderer, view] = last, [width, height] = renderer.size;
-  for (let n = 0; n < 12; ++n) { renderer.drawQuick(...view); renderer.note(); renderer.lookFor(...view, 32); }
+  for (let n = 0; n < 12; ++n) { renderer.drawQuick(...view); renderer.note(); renderer.lookFor(32); }
   renderer.drawQuick(...view);
   const ids = renderer.ids(0, 0, width, height);
   const bitmap = await createImageBitmap(window.vdbviewFinal);
@@ -291,24 +301,47 @@ const done = arguments[0];
 })().catch((error) => done({ error: String(error) }));"""
 
 
-def circles():
-    """Quick pictures of large arcs have the silhouette of vdbtrace's picture: whole, near, half printed, cut open."""
-    lines = ["M83"]
-    for layer in range(1, 31):
-        lines.append(f";LAYER_CHANGE\n;TYPE:External perimeter\n;WIDTH:0.45\n;HEIGHT:0.2\nG0 X160 Y100 Z{0.2 * layer:.1f}\n"
-                     "G3 X40 I-60 J0 E7\nG3 X160 I60 J0 E7")
-    path = os.path.join(FOLDER, "ring.gcode")
+def silhouettes(what, voxel, lines, views):
+    """Quick pictures of a print have the silhouette of vdbtrace's picture."""
+    path = os.path.join(FOLDER, "silhouette.gcode")
     with open(path, "w", encoding="utf-8") as file:
-        file.write("\n".join(lines))
-    whole = {"eye": [100, -120, 160], "look_at": [100, 100, 0], "fov": 32}
-    near = {"eye": [100, -60, 60], "look_at": [100, 42, 3], "fov": 20}
-    for view in ({"camera": whole}, {"camera": near}, {"camera": whole, "printed": 25}, {"camera": whole, "clip": [0, -1, 0, -80]}):
-        with viewer.of(path, "--voxel-size", "0.1"):
+        file.write("\n".join(["M83", *lines]))
+    for view in views:
+        with viewer.of(path, "--voxel-size", voxel):
             drawn_here()
             show(integrator="normal", bed=False, spp=16, **view)
             found = page.execute_async_script(OUTLINE)
-            print(f"silhouette of a circle, {view}: {found}")
-            check(found["hits"] > 500 and found["quick"] <= 1 and found["rest"] <= 1, f"the silhouette of a circle: {found}")
+            print(f"silhouette of {what}, {view}: {found}")
+            check(found["hits"] > 500 and found["quick"] <= 1 and found["rest"] <= 1, f"the silhouette of {what}: {found}")
+
+
+LAYER = ";LAYER_CHANGE\n;TYPE:External perimeter\n;WIDTH:0.45\n;HEIGHT:0.2"
+
+
+def circles():
+    """Large arcs: whole, near, half printed, cut open."""
+    lines = [f"{LAYER}\nG0 X160 Y100 Z{0.2 * layer:.1f}\nG3 X40 I-60 J0 E7\nG3 X160 I60 J0 E7" for layer in range(1, 31)]
+    whole = {"eye": [100, -120, 160], "look_at": [100, 100, 0], "fov": 32}
+    near = {"eye": [100, -60, 60], "look_at": [100, 42, 3], "fov": 20}
+    silhouettes("a circle", "0.1", lines, [{"camera": whole}, {"camera": near}, {"camera": whole, "printed": 25}, {"camera": whole, "clip": [0, -1, 0, -80]}])
+
+
+def corners():
+    """Straight beads that turn by 14 to 64 degrees, which begin and end beyond the picture: from above, from the side; and with arcs
+    between them."""
+    lines, arcs = [], []
+    for layer in range(1, 4):
+        x, y = 86, 100
+        for table in (lines, arcs):
+            table.append(f"{LAYER}\nG0 X{x} Y{y} Z{0.2 * layer:.1f}")
+        for n in range(32):
+            half_turn = radians((20, 40, 64, 64, 52, 30, 8)[n % 7] / 2) * (-1) ** n
+            x, y = x + cos(half_turn), y + sin(half_turn)
+            lines.append(f"G1 X{x:.4f} Y{y:.4f} E0.0374")
+            arcs.append(lines[-1] if n % 3 else f"G2 X{x:.4f} Y{y:.4f} R3 E0.0376")
+    views = [{"camera": {"eye": [100, 99, 60], "look_at": [100, 100.2, 0], "fov": 8}}, {"camera": {"eye": [90, 60, 50], "look_at": [100, 100.2, 0], "fov": 8}}]
+    silhouettes("corners", "0.02", lines, views)
+    silhouettes("corners with arcs", "0.02", arcs, views)
 
 
 def picks():
@@ -361,6 +394,7 @@ try:
     comes_into_sight()
     quick_colors()
     circles()
+    corners()
     agrees("tile.gcode", {"eye": [110, 60, 40], "look_at": [100, 98, 1], "fov": 2.5})
     agrees("tile_arcs.gcode", {"eye": [110, 60, 40], "look_at": [100, 98, 1], "fov": 2.5})
     agrees("vase.gcode", {"eye": [150, 60, 40], "look_at": [100, 90, 10], "fov": 3})

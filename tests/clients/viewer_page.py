@@ -4,11 +4,10 @@ import contextlib
 import json
 import os
 import subprocess
-import sys
-import time
 from math import radians, tan
 from urllib.parse import quote
 
+from chromium import until
 from run_tools import BIN
 
 # Whether the picture that the page draws has a colour within a pixel of each of these places, 0 to 1.
@@ -52,15 +51,7 @@ class ViewerPage:
         return self.page.execute_script(text, *arguments)
 
     def until(self, condition, text, seconds=150):
-        """Waits until an expression of JavaScript is true; returns its value."""
-        end = time.monotonic() + seconds
-        while time.monotonic() < end:
-            value = self.js(f"return {condition}")
-            if value:
-                return value
-            time.sleep(0.05)
-        print(self.js("return [window.vdbviewLog?.slice(-5), window.told, document.body.innerText]"), self.page.get_log("browser"))
-        sys.exit(f"FAILED: {text}: not within {seconds} s")
+        return until(self.page, condition, text, seconds)
 
     @contextlib.contextmanager
     def of(self, path, *options, query=""):

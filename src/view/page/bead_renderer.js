@@ -1,21 +1,22 @@
 // Draws a table of beads with WebGL2, in two passes: which bead is nearest, then the light on it; or, where that takes too
 // long, in one.
-import { SOUGHT, beadFragments, beadVertices, seekFragments, seekVertices } from "./bead_shaders.js";
+import { NEAR, SOUGHT, beadFragments, beadVertices, seekFragments, seekVertices } from "./bead_shaders.js";
 import { GRID, backFragments, backVertices, gridFragments, lightFragments, screenVertices } from "./light_shaders.js";
 import { CoarseBeads } from "./coarse_beads.js";
-import { quickFragments, quickVertices } from "./quick_shaders.js";
+import { quickFragments, quickVertices, ribbonFragments } from "./quick_shaders.js";
 import { VisibleBeads } from "./visible_beads.js";
 import { LineRenderer } from "./line_renderer.js";
 import { ROW, fillTable, makeFramebuffer, makeIndices, makeProgram, makeTable, makeTexture, release, setUniforms } from "./webgl.js";
 import { dot, project, sub } from "./camera.js";
 
 const SETS = 3; // of coarse beads that are kept: each takes half of what the table takes
+const RIBBONS = 13; // the unit of their table
 const DRAW = 16384; // beads or ribbons a call: their corners are counted in 16 bits
 
 export class BeadRenderer {
   /** Throws an Error that says what is missing. */
   constructor(canvas, table) {
-    const gl = canvas.getContext("webgl2", { antialias: false, alpha: false, depth: false, powerPreference: "high-performance" });
+    const gl = canvas.getContext("webgl2", { antialias: false, alpha: false, depth: true, powerPreference: "high-performance" });
     if (!gl) throw new Error("no WebGL2");
     gl.getExtension("EXT_conservative_depth"); // beads behind others are left out before their ray is cast
     this.gl = gl;
@@ -41,7 +42,7 @@ export class BeadRenderer {
     for (const name of ["palette", "ids", "normals", "depths", "picture"]) this.textures[name] = makeTexture(gl);
     this.units = Object.fromEntries(Object.keys(this.textures).map((name, n) => [name, n]));
     const corners = new Uint16Array(6 * DRAW);
-    for (let n = 0; n < DRAW; ++n) corners.set([0, 1, 2, 2, 1, 3].map((k) => 4 * n + k), 6 * n);
+    for (let n = 0; n < DRAW; ++n) corners.set([0, 1, 2, 1, 3, 2].map((k) => 4 * n + k), 6 * n);
     this.corners = makeIndices(gl, corners);
     const grid = [];
     for (let y = 0; y < GRID[1]; ++y)
@@ -49,12 +50,17 @@ export class BeadRenderer {
     this.grid = makeIndices(gl, Uint16Array.from(grid));
     this.target = makeFramebuffer(gl);
     this.quickTarget = makeFramebuffer(gl);
+    this.ribbonTarget = makeFramebuffer(gl);
+    this.ribbons = makeTexture(gl, gl.NEAREST, gl.TEXTURE_2D_ARRAY);
+    this.ribbonRows = 0;
     this.found = makeFramebuffer(gl);
     const found = makeTexture(gl);
     gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA8, ROW, SOUGHT / ROW, 0, gl.RGBA, gl.UNSIGNED_BYTE, null);
     gl.bindFramebuffer(gl.FRAMEBUFFER, this.found);
     gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0, gl.TEXTURE_2D, found, 0);
     this.size = [0, 0];
+    this.known = null; // camera and state whose beads and depths are in the textures
+    this.unknown = null; // of the last picture if they are not
     this.end = table.count;
     this.look = null;
     this.backs = {}; // programs
@@ -98,6 +104,7 @@ export class BeadRenderer {
     if (this.size[0] === width && this.size[1] === height) return;
     const gl = this.gl;
     this.size = [width, height];
+    this.known = this.unknown = null;
     this.canvas.width = width;
     this.canvas.height = height;
     const numbers = [gl.R32UI, gl.RED_INTEGER, gl.UNSIGNED_INT];
@@ -146,6 +153,8 @@ export class BeadRenderer {
   collect(camera, state, parts, anew) {
     const gl = this.gl;
     this.#use(this.beads, this.target, this.#view(camera, state));
+    this.unknown = null;
+    this.known = [camera, state];
     if (anew) {
       this.visible.restart();
       gl.clearBufferuiv(gl.COLOR, 0, [0, 0, 0, 0]);
@@ -175,22 +184,53 @@ export class BeadRenderer {
     this.lines.draw({ ...values, eye: camera.eye }, this.textures.depths);
   }
 
-  /** A picture of the beads that were seen lately, by the quick shaders. */
-  drawQuick(camera, state) {
+  /** A picture of the beads that were seen lately, by the quick shaders. `known`: with which bead and which depth is where.
+   * Without these it is drawn on the canvas itself, which has no place for them, and needs no way there. */
+  drawQuick(camera, state, known = true) {
     const gl = this.gl;
     const { kinds } = this.table;
     this.quick ??= makeProgram(gl, quickVertices(kinds), quickFragments(kinds));
+    this.maker ??= makeProgram(gl, screenVertices, ribbonFragments(kinds));
     const coarse = this.#coarseFor(camera, state);
-    const values = { ...this.#stage(camera, state), least: 0.6 * coarse.stride * this.table.layerHeight };
-    this.#use(this.quick, this.quickTarget, values);
+    known ||= this.lines.any;
+    this.unknown = known ? null : [camera, state];
+    if (known) this.known = [camera, state];
+    // The canvas may have depths of 24 bits.
+    const near = known ? NEAR : Math.max(NEAR, 0.9 * Math.min(...this.#corners().map((corner) => dot(sub(corner, camera.eye), camera.forward))));
+    const values = { ...this.#stage(camera, state), ribbons: RIBBONS, least: 0.6 * coarse.stride * this.table.layerHeight, near };
+    const ribbons = coarse.ribbonsOf(this.visible.seenBeads);
+    this.#makeRibbons(ribbons, values);
+    this.#use(this.quick, known ? this.quickTarget : null, values);
     gl.clearBufferfv(gl.COLOR, 0, [0, 0, 0, 0]);
-    gl.clearBufferuiv(gl.COLOR, 1, [0, 0, 0, 0]);
+    if (known) gl.clearBufferuiv(gl.COLOR, 1, [0, 0, 0, 0]);
     gl.clearBufferfv(gl.DEPTH, 0, [0]);
-    this.#drawList(this.quick, coarse.ribbonsOf(this.visible.seenBeads));
+    this.#drawBeads(this.quick, true, 0, ribbons.length);
     gl.bindFramebuffer(gl.FRAMEBUFFER, null);
+    gl.depthFunc(gl.GEQUAL);
+    if (known) gl.disable(gl.DEPTH_TEST);
+    this.#drawBack(values, known);
+    if (known) this.lines.draw({ ...values, eye: camera.eye }, this.textures.depths);
+  }
+
+  /** Makes the table of ribbons. */
+  #makeRibbons(list, values) {
+    const gl = this.gl;
+    const rows = Math.ceil(list.length / ROW);
+    if (!rows) return;
+    this.#use(this.maker, this.ribbonTarget, values, [ROW, rows]);
     gl.disable(gl.DEPTH_TEST);
-    this.#drawBack(values, true);
-    this.lines.draw({ ...values, eye: camera.eye }, this.textures.depths);
+    gl.activeTexture(gl.TEXTURE0 + this.units.list);
+    fillTable(gl, this.textures.list, list, 1);
+    gl.activeTexture(gl.TEXTURE0 + RIBBONS);
+    gl.bindTexture(gl.TEXTURE_2D_ARRAY, this.ribbons);
+    if (rows > this.ribbonRows) {
+      this.ribbonRows = rows;
+      gl.texImage3D(gl.TEXTURE_2D_ARRAY, 0, gl.RGBA32UI, ROW, rows, 4, 0, gl.RGBA_INTEGER, gl.UNSIGNED_INT, null);
+      for (let n = 0; n < 4; ++n) gl.framebufferTextureLayer(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0 + n, this.ribbons, 0, n);
+      gl.drawBuffers([0, 1, 2, 3].map((n) => gl.COLOR_ATTACHMENT0 + n));
+    }
+    setUniforms(gl, this.maker, { from_list: true, first: 0, count: list.length });
+    gl.drawArrays(gl.TRIANGLES, 0, 3);
   }
 
   /** How coarse beads may be, by the size of a pixel: by powers of two, and it changes seldom. */
@@ -219,13 +259,13 @@ export class BeadRenderer {
   }
 
   /** Draws beads into a target from here on. */
-  #use(program, target, values) {
+  #use(program, target, values, size = this.size) {
     const gl = this.gl;
     this.#bind();
     gl.useProgram(program.program);
     setUniforms(gl, program, values);
     gl.bindFramebuffer(gl.FRAMEBUFFER, target);
-    gl.viewport(0, 0, ...this.size);
+    gl.viewport(0, 0, ...size);
     gl.enable(gl.DEPTH_TEST);
     gl.depthFunc(gl.GREATER);
     gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, this.corners);
@@ -270,12 +310,16 @@ export class BeadRenderer {
     gl.drawElements(gl.TRIANGLES, 6 * GRID[0] * GRID[1], gl.UNSIGNED_SHORT, 0);
   }
 
+  /** Of a box about the print. */
+  #corners() {
+    const { low, grain } = this.table;
+    return [0, 1, 2, 3, 4, 5, 6, 7].map((n) => low.map((v, axis) => (n & (1 << axis) ? v + 65535 * grain[axis] + 3 : v - 3)));
+  }
+
   /** Pixels that the print's box may cover: x, y, width, height from below. */
   #frame(camera) {
-    const { low, grain } = this.table;
     const [width, height] = this.size;
-    const corner = (n) => low.map((v, axis) => (n & (1 << axis) ? v + 65535 * grain[axis] + 3 : v - 3));
-    const places = [0, 1, 2, 3, 4, 5, 6, 7].map((n) => project(camera, width / height, corner(n)));
+    const places = this.#corners().map((corner) => project(camera, width / height, corner));
     if (places.includes(null)) return [0, 0, width, height];
     const span = (values, side) => {
       const first = Math.max(0, Math.floor(Math.min(...values) * side - 8));
@@ -286,15 +330,16 @@ export class BeadRenderer {
     return [x, y, across, up];
   }
 
-  /** Looks in the last picture for `rows` more of the beads that may have come into sight; the next one has them. */
-  lookFor(camera, state, rows) {
+  /** Looks in the last picture with depths for `rows` more of the beads that may have come into sight; the next one has them. */
+  lookFor(rows) {
+    if (!this.known) return;
     const gl = this.gl;
     const { coarse } = this.visible;
     const [first, count] = this.visible.sought(rows * ROW);
     this.shift = ((this.shift ?? 0) + 0.618) % 1;
     this.#bind();
     gl.useProgram(this.seek.program);
-    setUniforms(gl, this.seek, { ...this.#view(camera, state), list: this.units.coarse, from_list: coarse !== null, first, shift: this.shift });
+    setUniforms(gl, this.seek, { ...this.#view(...this.known), list: this.units.coarse, from_list: coarse !== null, first, shift: this.shift });
     gl.bindFramebuffer(gl.FRAMEBUFFER, this.found);
     gl.viewport(0, 0, ROW, SOUGHT / ROW);
     gl.clearBufferfv(gl.COLOR, 0, [0, 0, 0, 0]);
@@ -307,7 +352,9 @@ export class BeadRenderer {
 
   /** Waits until the picture is there. */
   finish() {
-    this.ids(0, 0, 1, 1);
+    if (!this.unknown) return this.ids(0, 0, 1, 1);
+    this.gl.bindFramebuffer(this.gl.FRAMEBUFFER, null);
+    this.gl.readPixels(0, 0, 1, 1, this.gl.RGBA, this.gl.UNSIGNED_BYTE, new Uint8Array(4));
   }
 
   /** Remembers which beads the picture shows. */
@@ -318,6 +365,7 @@ export class BeadRenderer {
   /** Which bead + 1 is at each pixel of a rectangle, from below; 0: none. */
   ids(x, y, width, height) {
     const gl = this.gl;
+    if (this.unknown) this.drawQuick(...this.unknown);
     gl.bindFramebuffer(gl.FRAMEBUFFER, this.target);
     const red = gl.getParameter(gl.IMPLEMENTATION_COLOR_READ_FORMAT) === gl.RED_INTEGER;
     const words = new Uint32Array((red ? 1 : 4) * width * height);

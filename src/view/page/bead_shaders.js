@@ -4,7 +4,7 @@
 // to the eye, so that floats are fine near the surface. Depth is along the viewing direction.
 import { ROW, ROW_BITS } from "./webgl.js";
 
-export const NEAR = "0.05"; // mm, of depth 1
+export const NEAR = 0.05; // mm, of depth 1
 /** Beads that are looked for at a time, at most. */
 export const SOUGHT = 32 * ROW;
 

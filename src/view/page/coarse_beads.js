@@ -12,7 +12,8 @@ export class CoarseBeads {
   constructor(table, stride, tolerance) {
     Object.assign(this, { stride, tolerance });
     this.ofBead = new Uint32Array(table.count).fill(NONE); // which one stands for it
-    this.ends = new Uint32Array(table.count); // the last bead that one stands for; of an arc, the number of its ribbons
+    // The last bead that one stands for, and by that last one the first; of an arc, the number of its ribbons.
+    this.ends = new Uint32Array(table.count);
     this.arcs = table.kinds.arcs && new Uint8Array(table.count); // 1: it is one
     const beads = new Uint32Array(table.count);
     let count = 0;
@@ -21,6 +22,7 @@ export class CoarseBeads {
       const end = lastOf(table, n, tolerance);
       beads[count++] = n;
       this.ofBead.fill(n, n, end + 1);
+      this.ends[end] = n;
       this.ends[n] = end;
       const [radius, sweep] = table.arc(n);
       if (sweep) {

@@ -65,6 +65,11 @@ export class LineRenderer {
     this.sets.set(name, { ...old, ...rest, ...(table && { texture: makeTable(this.gl, table, 4), count: table.length / 8 }) });
   }
 
+  /** Whether a picture has any. */
+  get any() {
+    return [...this.sets.values()].some(({ kinds, count }) => kinds && count);
+  }
+
   /** On the picture that the framebuffer has. */
   draw(view, depths) {
     const gl = this.gl;
@@ -88,7 +93,7 @@ export class LineRenderer {
   /** The lines of the last picture alone, as a canvas that is upside down; null if there are none. */
   alone() {
     const gl = this.gl;
-    if (!this.last || ![...this.sets.values()].some(({ kinds, count }) => kinds && count)) return null;
+    if (!this.last || !this.any) return null;
     const [width, height] = this.last[0].size;
     gl.bindTexture(gl.TEXTURE_2D, this.image);
     gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA8, width, height, 0, gl.RGBA, gl.UNSIGNED_BYTE, null);

@@ -214,16 +214,16 @@ export class OwnPicture extends EventTarget {
     const began = performance.now();
     const renderer = this.#renderer;
     const { quick } = this.#pace;
-    if (quick) renderer.drawQuick(camera, state);
+    const turn = this.#frames++ % 4;
+    if (quick) renderer.drawQuick(camera, state, turn === 0);
     else {
       renderer.collect(camera, state, 0, true);
       renderer.light(camera, state);
     }
-    const turn = this.#frames++ % 4;
     if (turn === 0) renderer.note();
-    else if (turn === 2) renderer.lookFor(camera, state, quick ? 8 : 32);
-    else if (quick) renderer.finish();
-    else return;
+    else if (turn === 2) renderer.lookFor(quick ? 8 : 32);
+    else if (!quick) return;
+    if (quick) renderer.finish();
     this.#pace.took(performance.now() - began);
   }
   /** Pixels of the last picture. */

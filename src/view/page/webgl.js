@@ -46,13 +46,11 @@ export function setUniforms(gl, { places }, values) {
     if (places[name]) gl[setters[places[name][1]] ?? "uniform1i"](places[name][0], value);
 }
 
-export function makeTexture(gl, filter = gl.NEAREST) {
+export function makeTexture(gl, filter = gl.NEAREST, kind = gl.TEXTURE_2D) {
   const texture = make(gl, "Texture");
-  gl.bindTexture(gl.TEXTURE_2D, texture);
-  gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MIN_FILTER, filter);
-  gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MAG_FILTER, filter);
-  gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_WRAP_S, gl.CLAMP_TO_EDGE);
-  gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_WRAP_T, gl.CLAMP_TO_EDGE);
+  gl.bindTexture(kind, texture);
+  for (const name of ["MIN_FILTER", "MAG_FILTER"]) gl.texParameteri(kind, gl[`TEXTURE_${name}`], filter);
+  for (const name of ["WRAP_S", "WRAP_T"]) gl.texParameteri(kind, gl[`TEXTURE_${name}`], gl.CLAMP_TO_EDGE);
   return texture;
 }
 
