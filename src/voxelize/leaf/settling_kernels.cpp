@@ -120,31 +120,27 @@ HWY_INLINE VF lookUp(const float* table, VF z) {
     return hn::Add(low, hn::Mul(hn::Sub(at, hn::ConvertTo(f, step)), hn::Sub(high, low)));
 }
 
-// The level of the groove between two beads at one vector of samples.
-HWY_INLINE VF lowerLevel(const BeadPlan& a, const BeadPlan& b, std::size_t c, VF least, const GrooveRule& rule,
-                         VF levels) {
+// Half the gap between two beads at one vector of samples, radii, larger where they don't lie opposite.
+HWY_INLINE VF halfGap(const BeadPlan& a, const BeadPlan& b, std::size_t c, const GrooveRule& rule) {
     const F f;
     const VF zero = hn::Zero(f);
-    const VF one = hn::Set(f, 1.0F);
     const VF gap = hn::Add(hn::Max(hn::Load(f, a.d.v + c), zero), hn::Max(hn::Load(f, b.d.v + c), zero));
-    // Deep in a flat nothing changes.
-    const auto near = hn::And(hn::Lt(gap, hn::Set(f, 2 * rule.radius)), hn::Gt(least, hn::Set(f, -rule.weld_level)));
-    if (hn::AllFalse(f, near)) return levels;
     const VF cosine =
         dot(hn::Load(f, a.nx.v + c), hn::Load(f, a.ny.v + c), hn::Load(f, b.nx.v + c), hn::Load(f, b.ny.v + c));
-    // From here on half_gap below is 1 and more.
-    if (hn::AllFalse(f, hn::Lt(cosine, hn::Set(f, 0.01F)))) return levels;
     const VF off = hn::Mul(hn::Max(hn::Sub(cosine, hn::Set(f, static_cast<float>(kOpposite))), zero),
                            hn::Set(f, static_cast<float>(-1 / kOpposite)));
     const VF penalty = hn::Mul(hn::Set(f, static_cast<float>(0.5 * kTurnPenalty)), hn::Mul(off, off));
-    const VF half_gap = hn::Add(hn::Mul(gap, hn::Set(f, 1 / (2 * rule.radius))), penalty);  // radii
+    return hn::Add(hn::Mul(gap, hn::Set(f, 1 / (2 * rule.radius))), penalty);
+}
+
+// The level of a groove, below a half gap of 1.
+HWY_INLINE VF levelOf(VF half_gap, const GrooveRule& rule) {
+    const F f;
+    const VF one = hn::Set(f, 1.0F);
     const VF open = hn::Mul(hn::Sub(half_gap, hn::Set(f, rule.closing)), hn::Set(f, rule.per_open));
-    const auto fills = hn::And(near, hn::Lt(open, one));
-    if (hn::AllFalse(f, fills)) return levels;
-    const VF q = hn::Min(hn::Max(open, zero), one);
+    const VF q = hn::Min(hn::Max(open, hn::Zero(f)), one);
     const VF z = hn::Sub(one, hn::Sqrt(hn::Sub(one, hn::Sqrt(q))));
-    const VF level = hn::Mul(lookUp(rule.table, z), hn::Set(f, rule.radius));
-    return hn::IfThenElse(fills, hn::Min(levels, level), levels);
+    return hn::Mul(lookUp(rule.table, z), hn::Set(f, rule.radius));
 }
 
 void LevelsBetween(std::span<const BeadPlan> plans, std::span<const std::uint32_t> which, const PlanField& d,
@@ -155,7 +151,8 @@ void LevelsBetween(std::span<const BeadPlan> plans, std::span<const std::uint32_
     const BeadPlan* near[2][kSome];
     forEachVector([&](std::size_t c) HWY_ATTR {
         const VF least = hn::Load(f, d.v + c);
-        VF lowest = hn::Set(f, kNoGroove);
+        // Of all pairs the narrowest gap has the lowest level.
+        VF narrowest = hn::Set(f, 1.0F);
         // Of all beads of a column few are near to the samples of one vector.
         const auto gather = [&](std::size_t first, const BeadPlan** found) HWY_ATTR {
             std::size_t count = 0;
@@ -166,7 +163,7 @@ void LevelsBetween(std::span<const BeadPlan> plans, std::span<const std::uint32_
             return count;
         };
         const auto lower = [&](const BeadPlan& a, const BeadPlan& b) HWY_ATTR {
-            if (a.least + b.least < 2 * rule.radius) lowest = lowerLevel(a, b, c, least, rule, lowest);
+            if (a.least + b.least < 2 * rule.radius) narrowest = hn::Min(narrowest, halfGap(a, b, c, rule));
         };
         const bool deep = hn::AllFalse(f, hn::Gt(least, hn::Set(f, -rule.weld_level)));
         for (std::size_t first = 0; !deep && first < which.size(); first += kSome) {
@@ -179,7 +176,11 @@ void LevelsBetween(std::span<const BeadPlan> plans, std::span<const std::uint32_
                     for (std::size_t b = 0; b < others; ++b) lower(*near[0][a], *near[1][b]);
             }
         }
-        hn::Store(lowest, f, levels.v + c);
+        // Deep in a flat nothing changes.
+        const auto fills = hn::And(hn::Lt(narrowest, hn::Set(f, 1.0F)), hn::Gt(least, hn::Set(f, -rule.weld_level)));
+        const VF none = hn::Set(f, kNoGroove);
+        hn::Store(hn::AllFalse(f, fills) ? none : hn::IfThenElse(fills, levelOf(narrowest, rule), none), f,
+                  levels.v + c);
     });
 }
 
