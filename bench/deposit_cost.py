@@ -66,7 +66,8 @@ def main():
     parser.add_argument("--folder", help="for what is written")
     options = parser.parse_args()
     print(f"voxels of {options.voxel_size} mm, {options.runs} runs in turns\n")
-    print("| print | beads are | beads | reading s | file s | of capsules | first look s | of capsules | picture s | of capsules |")
+    print("| print | beads are | beads | reading s | file s | of capsules | first look s | of capsules "
+          "| picture s | of capsules |")
     print("|---|---|---|---|---|---|---|---|---|---|", flush=True)
     with tempfile.TemporaryDirectory(prefix="stratum_cost_", dir=options.folder) as folder:
         for print_file in options.files:
