@@ -1,6 +1,7 @@
 #include "voxelize/swell/tile_sums.h"
 
 #include "voxelize/leaf/leaf_column.h"
+#include "voxelize/swell/fed_volume.h"
 #include "voxelize/swell/node_sums.h"
 #include "voxelize/swell/open_top.h"
 
@@ -10,9 +11,7 @@
 #include <cmath>
 #include <limits>
 #include <memory>
-#include <numbers>
 #include <span>
-#include <utility>
 #include <vector>
 
 namespace stratum::voxelize {
@@ -166,136 +165,6 @@ private:
     const std::array<std::array<float, 8>, 256> ones_ = onesOfBytes();
 };
 
-// Lays a bead's volume along its path, evenly over the width of a box of its height.
-class Feeder {
-public:
-    Feeder(const gcode::Toolpath& toolpath, const LayerStack& stack, TilePlace place)
-        : toolpath_(toolpath), stack_(stack), first_x_(place.x * kSumCells), first_y_(place.y * kSumCells) {}
-
-    void feed(std::uint32_t rank, WholeLayer& sums) const {
-        const std::uint32_t index = stack_.beads[rank];
-        const gcode::Bead& bead = toolpath_.beads[index];
-        const double volume = gcode::laidVolume(toolpath_, index);
-        const double height = 2 * stack_.layers[stack_.layer[rank]].halfHeight();
-        const gcode::PlanPath path(toolpath_, bead);
-        // A disc at a place is as long as it is wide.
-        const double length =
-            std::max(path.length(), std::min(std::sqrt(volume / height), static_cast<double>(bead.width)));
-        if (!(volume > 0) || !(length > 0)) return;
-        const double at_ends = feedEnds(index, volume, path, sums);
-        const double along = volume - at_ends;
-        const double width = along / (height * length);
-        const int steps = std::max(static_cast<int>(std::ceil(length / kStep)), 1);
-        const double part = along / (steps * static_cast<double>(kAcross.size()));
-        const auto [from, to] = stepsInTile(bead, length, width, steps);
-        const bool line = path.straight() && path.length() > 0;
-        const Place start = placeAt(path, 0, length);
-        for (int n = from; n < to; ++n) {
-            const double t = (n + 0.5) / steps;
-            // Of a line the direction is worked out once.
-            const double mm = t * length;
-            const Place place = line ? Place{start.x + mm * start.ux, start.y + mm * start.uy, start.ux, start.uy}
-                                     : placeAt(path, t, length);
-            for (const double side : kAcross) {
-                const double aside = side * width;
-                addPoint(place.x - aside * place.uy, place.y + aside * place.ux, part, sums);
-            }
-        }
-    }
-
-private:
-    static constexpr double kStep = 0.5 * kNodeSpacing;
-    // Of a width: evenly, so that parallel lines lay the same everywhere.
-    static constexpr std::array<double, 3> kAcross{-1.0 / 3, 0, 1.0 / 3};
-    struct Place {
-        double x, y, ux, uy;
-    };
-
-    // Where the flow is simulated, the half discs at free ends are part of a bead's volume: lays them there, and
-    // returns their volume.
-    double feedEnds(std::uint32_t index, double volume, const gcode::PlanPath& path, WholeLayer& sums) const {
-        const gcode::Bead& bead = toolpath_.beads[index];
-        const double discs = volume - gcode::beadVolume(toolpath_, bead);
-        if (toolpath_.flow.empty() || !(path.length() > 0) || !(discs > 0) || discs > 0.5 * volume) return 0;
-        const auto meets = [](const gcode::Bead& a, const gcode::Bead& b) {
-            constexpr double kSame = 1e-4;  // mm
-            return std::hypot(double{a.x1} - double{b.x0}, double{a.y1} - double{b.y0}) < kSame && a.z1 == b.z0;
-        };
-        const bool free_start = index == 0 || !meets(toolpath_.beads[index - 1], bead);
-        const bool free_end = index + 1 == toolpath_.beads.size() || !meets(bead, toolpath_.beads[index + 1]);
-        const int ends = (free_start ? 1 : 0) + (free_end ? 1 : 0);
-        if (ends == 0) return 0;
-        const double width = static_cast<double>(bead.width);
-        const double past = 2 * width / (3 * std::numbers::pi);  // the centroid of a half disc
-        for (const bool at_end : {false, true}) {
-            if (!(at_end ? free_end : free_start)) continue;
-            const Place place = placeAt(path, at_end ? 1 : 0, 0);
-            const double sign = at_end ? past : -past;
-            for (const double side : kAcross) {
-                const double aside = side * 0.8 * width;
-                addPoint(place.x + sign * place.ux - aside * place.uy, place.y + sign * place.uy + aside * place.ux,
-                         discs / (ends * static_cast<double>(kAcross.size())), sums);
-            }
-        }
-        return discs;
-    }
-
-    // `length`: of the path, or of a disc at its place, in the direction of x.
-    static Place placeAt(const gcode::PlanPath& path, double t, double length) {
-        if (!(path.length() > 0)) {
-            const gcode::PlanPoint at = path.at(0);
-            return {at.x + (t - 0.5) * length, at.y, 1, 0};
-        }
-        const double mm = t * path.length();
-        const gcode::PlanPoint at = path.at(mm);
-        const gcode::PlanPoint along = path.direction(mm);
-        return {at.x, at.y, along.x, along.y};
-    }
-
-    // Steps of a straight bead that may lay something in the tile; all of an arc.
-    std::pair<int, int> stepsInTile(const gcode::Bead& bead, double length, double width, int steps) const {
-        if (bead.arc >= 0) return {0, steps};
-        double low = 0;
-        double high = 1;
-        const double more = width + length / steps;
-        const auto clip = [&](double from, double to, int first) {
-            const double least = first * kNodeSpacing - more;
-            const double most = (first + kSumCells) * kNodeSpacing + more;
-            if (std::abs(to - from) < more) return;
-            const double a = (least - from) / (to - from);
-            const double b = (most - from) / (to - from);
-            low = std::max(low, std::min(a, b));
-            high = std::min(high, std::max(a, b));
-        };
-        clip(bead.x0, bead.x1, first_x_);
-        clip(bead.y0, bead.y1, first_y_);
-        if (low >= high) return {0, 0};
-        return {std::max(static_cast<int>(std::floor(low * steps)) - 1, 0),
-                std::min(static_cast<int>(std::ceil(high * steps)) + 1, steps)};
-    }
-
-    // Each point lies in one cell of one tile.
-    void addPoint(double x, double y, double volume, WholeLayer& sums) const {
-        const double in_x = x * (1 / kNodeSpacing) - first_x_;
-        const double in_y = y * (1 / kNodeSpacing) - first_y_;
-        if (!(in_x >= 0 && in_x < kSumCells && in_y >= 0 && in_y < kSumCells)) return;
-        const int i = static_cast<int>(in_x);
-        const int j = static_cast<int>(in_y);
-        const double fx = nodeShare(in_x - i);
-        const double fy = nodeShare(in_y - j);
-        const std::size_t at = nodeIndex(j, kNodes, i);
-        TileSums::Node* const node = &sums.nodes[at];
-        node[0].surplus += static_cast<float>(volume * (1 - fx) * (1 - fy));
-        node[1].surplus += static_cast<float>(volume * fx * (1 - fy));
-        node[kNodes].surplus += static_cast<float>(volume * (1 - fx) * fy);
-        node[kNodes + 1].surplus += static_cast<float>(volume * fx * fy);
-    }
-
-    const gcode::Toolpath& toolpath_;
-    const LayerStack& stack_;
-    const int first_x_, first_y_;  // nodes
-};
-
 // Of the nodes that are not 0.
 NodeBox boxOf(const WholeLayer& sums) {
     NodeBox box;
@@ -418,7 +287,7 @@ TileSums sumTile(const gcode::Toolpath& toolpath, const LayerStack& stack, const
         return sums;
     };
     for (WholeLayer& sums : whole) sums.used = false;
-    RankSet feeds(own.firstRank(), own.lastRank());
+    RankSet own_ranks(own.firstRank(), own.lastRank());
     std::vector<OpenTop> tops;
     std::vector<TopFields> fields;  // of tops, where they have crowns
     PlanField highest;
@@ -428,7 +297,7 @@ TileSums sumTile(const gcode::Toolpath& toolpath, const LayerStack& stack, const
             if (bin == PlanBins::kNone) continue;
             const std::span<const std::uint32_t> near = own.ownOf(bins[bin]);
             if (near.empty()) continue;
-            feeds.add(near);
+            own_ranks.add(near);
             column.open(bins.originI(bin), bins.originJ(bin), own.neededOf(bins[bin], near),
                         std::numeric_limits<std::uint32_t>::max());
             const int first_node = kSquareCells * (cj * kNodes + ci);
@@ -456,8 +325,8 @@ TileSums sumTile(const gcode::Toolpath& toolpath, const LayerStack& stack, const
                              sumsOf(top.layer));
             }
         }
-    const Feeder feeder(toolpath, stack, place);
-    feeds.forEach([&](std::uint32_t rank) { feeder.feed(rank, sumsOf(stack.layer[rank])); });
+    const FedVolume fed(toolpath, stack, place);
+    own_ranks.forEach([&](std::uint32_t rank) { fed.feed(rank, sumsOf(stack.layer[rank]).nodes); });
     TileSums tile;
     for (std::size_t n = 0; n < whole.size(); ++n)
         if (whole[n].used) tile.layers[n] = keep(whole[n]);

@@ -1,0 +1,132 @@
+#include "voxelize/swell/fed_volume.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+namespace stratum::voxelize {
+namespace {
+
+constexpr double kStep = 0.5 * kNodeSpacing;
+// Of a width: evenly, so that parallel lines lay the same everywhere.
+constexpr std::array<double, 3> kAcross{-1.0 / 3, 0, 1.0 / 3};
+
+struct Place {
+    double x, y, ux, uy;
+};
+
+// `length`: of the path, or of a disc at its place, in the direction of x.
+Place placeAt(const gcode::PlanPath& path, double t, double length) {
+    if (!(path.length() > 0)) {
+        const gcode::PlanPoint at = path.at(0);
+        return {at.x + (t - 0.5) * length, at.y, 1, 0};
+    }
+    const double mm = t * path.length();
+    const gcode::PlanPoint at = path.at(mm);
+    const gcode::PlanPoint along = path.direction(mm);
+    return {at.x, at.y, along.x, along.y};
+}
+
+}  // namespace
+
+FedVolume::FedVolume(const gcode::Toolpath& toolpath, const LayerStack& stack, TilePlace place)
+    : toolpath_(toolpath), stack_(stack), first_x_(place.x * kSumCells), first_y_(place.y * kSumCells) {}
+
+void FedVolume::feed(std::uint32_t rank, std::span<TileSums::Node> nodes) const {
+    const std::uint32_t index = stack_.beads[rank];
+    const gcode::Bead& bead = toolpath_.beads[index];
+    const double volume = gcode::laidVolume(toolpath_, index);
+    const double height = 2 * stack_.layers[stack_.layer[rank]].halfHeight();
+    const gcode::PlanPath path(toolpath_, bead);
+    // A disc at a place is as long as it is wide.
+    const double length =
+        std::max(path.length(), std::min(std::sqrt(volume / height), static_cast<double>(bead.width)));
+    if (!(volume > 0) || !(length > 0)) return;
+    const double at_ends = feedEnds(index, volume, path, nodes);
+    const double along = volume - at_ends;
+    const double width = along / (height * length);
+    const int steps = std::max(static_cast<int>(std::ceil(length / kStep)), 1);
+    const double part = along / (steps * static_cast<double>(kAcross.size()));
+    const auto [from, to] = stepsInTile(bead, length, width, steps);
+    const bool line = path.straight() && path.length() > 0;
+    const Place start = placeAt(path, 0, length);
+    for (int n = from; n < to; ++n) {
+        const double t = (n + 0.5) / steps;
+        // Of a line the direction is worked out once.
+        const double mm = t * length;
+        const Place place = line ? Place{start.x + mm * start.ux, start.y + mm * start.uy, start.ux, start.uy}
+                                 : placeAt(path, t, length);
+        for (const double side : kAcross) {
+            const double aside = side * width;
+            addPoint(place.x - aside * place.uy, place.y + aside * place.ux, part, nodes);
+        }
+    }
+}
+
+double FedVolume::feedEnds(std::uint32_t index, double volume, const gcode::PlanPath& path,
+                           std::span<TileSums::Node> nodes) const {
+    const gcode::Bead& bead = toolpath_.beads[index];
+    const double discs = volume - gcode::beadVolume(toolpath_, bead);
+    if (toolpath_.flow.empty() || !(path.length() > 0) || !(discs > 0) || discs > 0.5 * volume) return 0;
+    const auto meets = [](const gcode::Bead& a, const gcode::Bead& b) {
+        constexpr double kSame = 1e-4;  // mm
+        return std::hypot(double{a.x1} - double{b.x0}, double{a.y1} - double{b.y0}) < kSame && a.z1 == b.z0;
+    };
+    const bool free_start = index == 0 || !meets(toolpath_.beads[index - 1], bead);
+    const bool free_end = index + 1 == toolpath_.beads.size() || !meets(bead, toolpath_.beads[index + 1]);
+    const int ends = (free_start ? 1 : 0) + (free_end ? 1 : 0);
+    if (ends == 0) return 0;
+    const double width = static_cast<double>(bead.width);
+    const double past = 2 * width / (3 * std::numbers::pi);  // the centroid of a half disc
+    for (const bool at_end : {false, true}) {
+        if (!(at_end ? free_end : free_start)) continue;
+        const Place place = placeAt(path, at_end ? 1 : 0, 0);
+        const double sign = at_end ? past : -past;
+        for (const double side : kAcross) {
+            const double aside = side * 0.8 * width;
+            addPoint(place.x + sign * place.ux - aside * place.uy, place.y + sign * place.uy + aside * place.ux,
+                     discs / (ends * static_cast<double>(kAcross.size())), nodes);
+        }
+    }
+    return discs;
+}
+
+std::pair<int, int> FedVolume::stepsInTile(const gcode::Bead& bead, double length, double width, int steps) const {
+    if (bead.arc >= 0) return {0, steps};
+    double low = 0;
+    double high = 1;
+    const double more = width + length / steps;
+    const auto clip = [&](double from, double to, int first) {
+        const double least = first * kNodeSpacing - more;
+        const double most = (first + kSumCells) * kNodeSpacing + more;
+        if (std::abs(to - from) < more) return;
+        const double a = (least - from) / (to - from);
+        const double b = (most - from) / (to - from);
+        low = std::max(low, std::min(a, b));
+        high = std::min(high, std::max(a, b));
+    };
+    clip(bead.x0, bead.x1, first_x_);
+    clip(bead.y0, bead.y1, first_y_);
+    if (low >= high) return {0, 0};
+    return {std::max(static_cast<int>(std::floor(low * steps)) - 1, 0),
+            std::min(static_cast<int>(std::ceil(high * steps)) + 1, steps)};
+}
+
+void FedVolume::addPoint(double x, double y, double volume, std::span<TileSums::Node> nodes) const {
+    const double in_x = x * (1 / kNodeSpacing) - first_x_;
+    const double in_y = y * (1 / kNodeSpacing) - first_y_;
+    if (!(in_x >= 0 && in_x < kSumCells && in_y >= 0 && in_y < kSumCells)) return;
+    const int i = static_cast<int>(in_x);
+    const int j = static_cast<int>(in_y);
+    const double fx = nodeShare(in_x - i);
+    const double fy = nodeShare(in_y - j);
+    const std::size_t at = nodeIndex(j, TileSums::kNodes, i);
+    TileSums::Node* const node = &nodes[at];
+    node[0].surplus += static_cast<float>(volume * (1 - fx) * (1 - fy));
+    node[1].surplus += static_cast<float>(volume * fx * (1 - fy));
+    node[TileSums::kNodes].surplus += static_cast<float>(volume * (1 - fx) * fy);
+    node[TileSums::kNodes + 1].surplus += static_cast<float>(volume * fx * fy);
+}
+
+}  // namespace stratum::voxelize
