@@ -170,7 +170,7 @@ private:
     void findSwellTiles(std::uint32_t z);
     /// Asks for what swell() and raise() of a layer need.
     void prefetchSwell(std::uint32_t layer);
-    /// One kind of values of a layer at the nodes of the open column, into swell_nodes_. False if all are 0.
+    /// One kind of values of a layer at the nodes of the open column, into swell_nodes_. False if the layer has none.
     bool gatherNodes(std::uint32_t layer, NodeValues SwellTile::*kind);
     /// Those values at the samples, times `scale`. False if all are 0.
     bool valuesOf(std::uint32_t layer, NodeValues SwellTile::*kind, double scale, PlanField& values);

@@ -11,6 +11,7 @@
 #include <openvdb/tools/Interpolation.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <numbers>
@@ -339,6 +340,25 @@ TEST(SwellField, WhatMovesUpPassesBordersOfTiles) {
         std::printf("  %d layers: %.4f mm3, %d: %.4f mm3\n", border, last, layers, raisedOf(layers));
         EXPECT_NEAR(raisedOf(layers), last, 0.05 * last) << layers;
     }
+}
+
+// A layer that lacks more than the one below has left over uses all of that up: nothing reaches the layer on it.
+TEST(SwellField, WhatALayerLacksIsNotPassedOn) {
+    const auto riseOfThird = [](double first, double second) {
+        gcode::Toolpath toolpath = solid(0.97, 3);
+        toolpath.deposit.beads = DepositModel::Beads::settled;
+        const std::array<double, 3> flows{first, second, 1};  // of layers
+        for (const gcode::Bead& bead : toolpath.beads) {
+            const double flow = flows[toolpath.runOf(bead).layer - 1];
+            toolpath.flow.push_back({static_cast<float>(flow * gcode::beadVolume(toolpath, bead)), 0, 0});
+        }
+        const LayerStack stack = stackLayers(toolpath, test::allBeads(toolpath));
+        return stack.swell->at(toolpath, stack, 2, 0, 0).rise;
+    };
+    const double alone = riseOfThird(0.5, 0.9);
+    EXPECT_GT(alone, 0);
+    EXPECT_GT(riseOfThird(1, 1), 1.5 * alone) << "nothing comes from below";
+    EXPECT_NEAR(riseOfThird(1, 0.9), alone, 1e-9);
 }
 
 // Tiles are kept where beads are, not over the rectangle: 19 m apart it would have 1e8 of them.
