@@ -131,6 +131,10 @@ std::vector<double> layerSeconds(const Toolpath& toolpath) {
     return layers;
 }
 
+std::string counted(std::size_t number, std::string_view noun) {
+    return fmt::format("{} {}{}", number, noun, number == 1 ? "" : "s");
+}
+
 std::string summarize(const Toolpath& toolpath) {
     fmt::memory_buffer out;
     const auto totals = featureTotals(toolpath);
@@ -140,9 +144,9 @@ std::string summarize(const Toolpath& toolpath) {
     fmt::format_to(std::back_inserter(out), "{} ({}), read by the rules of {}: {}\n",
                    toolpath.slicer.empty() ? "unknown slicer" : toolpath.slicer, toolpath.format, toolpath.firmware,
                    toolpath.firmware_reason);
-    fmt::format_to(std::back_inserter(out), "{} layers, {} beads, {} of them arcs; {:.2f} m, {:.2f} mm^3\n",
-                   toolpath.layer_count, toolpath.beads.size(), toolpath.arcs.size(), length / 1000,
-                   toolpath.extruded_mm3);
+    fmt::format_to(std::back_inserter(out), "{}, {}, {} of them arcs; {:.2f} m, {:.2f} mm^3\n",
+                   counted(toolpath.layer_count, "layer"), counted(toolpath.beads.size(), "bead"),
+                   toolpath.arcs.size(), length / 1000, toolpath.extruded_mm3);
     describeFilament(toolpath, out);
     describeColors(toolpath, out);
     for (std::size_t i = 0; i < totals.size(); ++i) {
@@ -154,8 +158,8 @@ std::string summarize(const Toolpath& toolpath) {
     if (toolpath.objects.size() > 1) {
         const auto objects = objectTotals(toolpath);
         for (std::size_t i = 1; i < objects.size(); ++i)
-            fmt::format_to(std::back_inserter(out), "  object {}, {}: {} beads, {:.2f} mm^3\n", i, toolpath.objects[i],
-                           objects[i].beads, objects[i].volume);
+            fmt::format_to(std::back_inserter(out), "  object {}, {}: {}, {:.2f} mm^3\n", i, toolpath.objects[i],
+                           counted(objects[i].beads, "bead"), objects[i].volume);
     }
     for (const Warning& warning : toolpath.warnings)
         fmt::format_to(std::back_inserter(out), "warning: line {}: {}{}\n", warning.first_line, warning.text,

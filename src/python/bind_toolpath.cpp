@@ -325,8 +325,8 @@ void addFacts(py::class_<ToolpathObject>& type) {
             }))
         .def("__len__", [](const ToolpathObject& self) { return self.toolpath->beads.size(); })
         .def("__repr__", [](const ToolpathObject& self) {
-            return fmt::format("<stratum.Toolpath: {} beads in {} layers>", self.toolpath->beads.size(),
-                               self.toolpath->layer_count);
+            return fmt::format("<stratum.Toolpath: {} in {}>", gcode::counted(self.toolpath->beads.size(), "bead"),
+                               gcode::counted(self.toolpath->layer_count, "layer"));
         });
 }
 

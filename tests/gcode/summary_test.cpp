@@ -15,7 +15,7 @@ TEST(Summary, SaysWhatThereIs) {
     const std::string text = summarize(readProgram(kProgram));
     for (const auto* part :
          {"PrusaSlicer 2.5.0 (ascii), read by the rules of klipper: the file's gcode_flavor is klipper\n",
-          "1 layers, 3 beads, 0 of them arcs; 0.20 m, 21.65 mm^3\n",
+          "1 layer, 3 beads, 0 of them arcs; 0.20 m, 21.65 mm^3\n",
           "T0: 4.00 mm of filament; the file says 4.00 (+0.00 %)\n",
           "T1: 5.00 mm of filament; the file says 4.00 (+25.00 %)\n", "perimeter", "brim",
           "warning: line 12: macro FOO", "(2 times)"})
@@ -83,7 +83,7 @@ TEST(Summary, Colors) {
 
 TEST(Summary, Objects) {
     const std::string text = summarize(readProgram("M83\nG1 Z.2\n; printing object a.stl\nG1 X9 E4\n"));
-    EXPECT_NE(text.find("  object 1, a.stl: 1 beads, 9.62 mm^3\n"), std::string::npos) << text;
+    EXPECT_NE(text.find("  object 1, a.stl: 1 bead, 9.62 mm^3\n"), std::string::npos) << text;
 }
 
 TEST(Summary, SecondsOfLayers) {
