@@ -130,11 +130,11 @@ private:
                 animate::growthShares(film.frames, film.held, ease / static_cast<double>(film.frames - film.held))};
         const assemble::StageOptions options = stageOptionsOf(o_);
         const int turns = film.turn ? static_cast<int>(film.frames) : 1;
-        reading.prints.pixel_spread = [&](const voxelize::Bounds& print, const voxelize::Bounds& part,
-                                          std::span<const glm::dvec3> outline) -> std::optional<shade::PixelSpread> {
-            if (!o_.objects.empty() || !film.keys.empty()) return std::nullopt;
-            return assemble::pixelSpreadOf(options, print, part, outline, nullptr, turns);
-        };
+        if (o_.objects.empty() && film.keys.empty())
+            reading.prints.pixel_spread = [&](const voxelize::Bounds& print, const voxelize::Bounds& part,
+                                              std::span<const glm::dvec3> outline) {
+                return assemble::pixelSpreadOf(options, print, part, outline, nullptr, turns);
+            };
         assemble::TracedObjects objects = assemble::readTracedObjects(objectsOf(o_, 0), reading);
         for (const std::string& line : objects.lines) say(o_.common, line);
         if (o_.legend && objects.legends.empty()) say(o_.common, "  no legend: nothing is coloured by an attribute");

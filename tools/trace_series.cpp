@@ -76,9 +76,11 @@ void requireOneMaterial(const assemble::TracedObjects& objects) {
 class Series {
 public:
     Series(const TraceCommand& o, int threads) : o_(o), threads_(threads), reading_(readingOf(o)) {
+        if (!o.objects.empty()) return;
         reading_.prints.pixel_spread = [this](const voxelize::Bounds& print, const voxelize::Bounds& part,
                                               std::span<const glm::dvec3> outline) {
-            return spread(print, part, outline);
+            return assemble::pixelSpreadOf(stageOptionsOf(o_), print, part, outline,
+                                           scene_ ? &scene_->camera : nullptr, o_.turntable);
         };
     }
 
@@ -106,13 +108,6 @@ public:
     const Json& reports() const { return reports_; }
 
 private:
-    std::optional<shade::PixelSpread> spread(const voxelize::Bounds& print, const voxelize::Bounds& part,
-                                             std::span<const glm::dvec3> outline) const {
-        if (!o_.objects.empty()) return std::nullopt;
-        return assemble::pixelSpreadOf(stageOptionsOf(o_), print, part, outline, scene_ ? &scene_->camera : nullptr,
-                                       o_.turntable);
-    }
-
     void begin(const assemble::TracedObjects& objects) {
         if (!o_.write_brdf.empty()) requireOneMaterial(objects);
         assemble::Stage stage = assemble::makeStage(objects, stageOptionsOf(o_), reading_.events);

@@ -51,10 +51,9 @@ ReadyScene readyScene(const std::vector<ObjectOptions>& objects, const PictureOp
     options.render.validate();
     options.scene.camera.validate();
     TracingOptions tracing = tracingFor(options.scene, options.render, options.tracing);
-    if (!tracing.prints.pixel_spread)
+    if (!tracing.prints.pixel_spread && objects.size() == 1 && objects.front().placement.isIdentity())
         tracing.prints.pixel_spread = [&](const voxelize::Bounds& print, const voxelize::Bounds& part,
-                                          std::span<const glm::dvec3> outline) -> std::optional<shade::PixelSpread> {
-            if (objects.size() != 1 || !objects.front().placement.isIdentity()) return std::nullopt;
+                                          std::span<const glm::dvec3> outline) {
             return pixelSpreadOf(options, print, part, outline);
         };
     TracedObjects read = readTracedObjects(objects, tracing);

@@ -268,6 +268,7 @@ for arguments, status, text in (
         (["part.gcode", "--film", "x.mp4", "--camera-path", "missing.json"], 3, "missing.json"),
         (["part.gcode", "--film", "x.mp4", "--camera-path", "down.json"], 2, "frame 1 of 30"),
         (["part.gcode", "--film", "x.mp4", "--camera-path", "path.json", "--turntable"], 2, "same camera"),
+        (["part.gcode", "--film", "x.mp4", "--camera-path", "path.json", "--voxel-size", "auto"], 2, "before one camera"),
         (["part.vdb", "--film", "x.mp4", "--grow", "time"], 2, "needs G-code"),
         (["part.vdb", "--film", "x.mp4", "--nozzle", "--seconds", "0.1"], 2, "needs G-code"),
         (["part.vdb", "-o", "x.png", "--nozzle"], 2, "needs G-code"),

@@ -184,6 +184,8 @@ public:
         : path_(path), request_(request), events_(events), warnings_(warnings) {}
 
     PrintLevels read(bool hash) {
+        if (request_.print.voxel_auto && !request_.pixel_spread)
+            throw UsageError("--voxel-size auto: is of a print that stands alone before one camera; give a number");
         Stopwatch watch;
         use(readProgram(path_, request_, events_, warnings_, hash));
         result_.parse_seconds = watch.lap();
@@ -231,11 +233,7 @@ private:
                                                ? bounds_
                                                : voxelize::boundsOf(*toolpath_, selection_, toolpath_->belt_angle),
                                            result_.part, result_.outline);
-        if (request_.print.voxel_auto) {
-            if (!spread)
-                throw UsageError("--voxel-size auto: is of a print that stands alone before one camera; give a number");
-            pixels_ = *spread;
-        }
+        if (request_.print.voxel_auto) pixels_ = *spread;
         lattice_ = voxelize::latticeFor(request_.print, *toolpath_, selection_, bounds_, voxelize::Interior::keep,
                                         spread ? spread->smallest : 0);
         if (!lattice_.warning.empty())

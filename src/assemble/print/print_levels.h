@@ -34,9 +34,9 @@ struct PrintRequest {
     /// a series are shares of the whole file, each with more beads than the one before.
     std::optional<voxelize::Growth> growth;
     /// The sizes of pixels on a print in the first box, mm, for print.voxel_auto and where no voxels are asked for;
-    /// what else it gets is of the part alone. None where the print does not stand alone, or the camera is not known.
-    std::function<std::optional<shade::PixelSpread>(const voxelize::Bounds& print, const voxelize::Bounds& part,
-                                                    std::span<const glm::dvec3> outline)>
+    /// what else it gets is of the part alone. Null where the print does not stand alone, or the camera is not known.
+    std::function<shade::PixelSpread(const voxelize::Bounds& print, const voxelize::Bounds& part,
+                                     std::span<const glm::dvec3> outline)>
         pixel_spread;
     bool outline = false;  ///< PrintLevels::outline is needed
     /// Where prints are kept for the next scene of the same files; null: nothing is kept. Not with print.voxel_auto.
