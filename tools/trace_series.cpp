@@ -79,8 +79,8 @@ public:
         if (!o.objects.empty()) return;
         reading_.prints.pixel_spread = [this](const voxelize::Bounds& print, const voxelize::Bounds& part,
                                               std::span<const glm::dvec3> outline) {
-            return assemble::pixelSpreadOf(stageOptionsOf(o_), print, part, outline,
-                                           scene_ ? &scene_->camera : nullptr, o_.turntable);
+            return assemble::pixelSpreadOf(stageOptionsOf(o_), print, part, outline, scene_ ? &scene_->camera : nullptr,
+                                           o_.turntable);
         };
     }
 

@@ -145,8 +145,8 @@ std::string summarize(const Toolpath& toolpath) {
                    toolpath.slicer.empty() ? "unknown slicer" : toolpath.slicer, toolpath.format, toolpath.firmware,
                    toolpath.firmware_reason);
     fmt::format_to(std::back_inserter(out), "{}, {}, {} of them arcs; {:.2f} m, {:.2f} mm^3\n",
-                   counted(toolpath.layer_count, "layer"), counted(toolpath.beads.size(), "bead"),
-                   toolpath.arcs.size(), length / 1000, toolpath.extruded_mm3);
+                   counted(toolpath.layer_count, "layer"), counted(toolpath.beads.size(), "bead"), toolpath.arcs.size(),
+                   length / 1000, toolpath.extruded_mm3);
     describeFilament(toolpath, out);
     describeColors(toolpath, out);
     for (std::size_t i = 0; i < totals.size(); ++i) {
