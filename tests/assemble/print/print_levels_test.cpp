@@ -57,9 +57,12 @@ TEST(PrintLevels, VoxelsThatNobodyChoseFollowShortPixels) {
     PrintRequest request = coarse();
     request.print.lattice.voxel_size.reset();
     const auto voxelsAt = [&request](std::optional<double> pixel) {
-        request.pixel_spread = [pixel](const voxelize::Bounds&, const voxelize::Bounds&, std::span<const glm::dvec3>) {
-            return pixel ? std::optional<shade::PixelSpread>({.smallest = *pixel}) : std::nullopt;
-        };
+        request.pixel_spread = nullptr;
+        if (pixel)
+            request.pixel_spread = [pixel](const voxelize::Bounds&, const voxelize::Bounds&,
+                                           std::span<const glm::dvec3>) {
+                return shade::PixelSpread{.smallest = *pixel};
+            };
         const PrintLevels print = read(request);
         EXPECT_EQ(print.levels.size(), 1U);
         const voxelize::Lattice& lattice = print.levels.front().field->layout().lattice;
