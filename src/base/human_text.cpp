@@ -17,4 +17,8 @@ std::string humanCount(double count) {
     return fmt::format("{:.0f}", count);
 }
 
+std::string counted(std::size_t number, std::string_view noun) {
+    return fmt::format("{} {}{}", number, noun, number == 1 ? "" : "s");
+}
+
 }  // namespace stratum

@@ -1,7 +1,9 @@
 // Sizes and counts as short text for people.
 #pragma once
 
+#include <cstddef>
 #include <string>
+#include <string_view>
 
 namespace stratum {
 
@@ -9,5 +11,7 @@ namespace stratum {
 std::string humanBytes(double bytes);
 /// "12.3 M", "45.6 k", "789".
 std::string humanCount(double count);
+/// "1 layer", "2 layers".
+std::string counted(std::size_t number, std::string_view noun);
 
 }  // namespace stratum

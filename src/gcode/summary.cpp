@@ -1,5 +1,6 @@
 #include "gcode/summary.h"
 
+#include "base/human_text.h"
 #include "gcode/slicer/bead_colors.h"
 
 #include <fmt/format.h>
@@ -129,10 +130,6 @@ std::vector<double> layerSeconds(const Toolpath& toolpath) {
         before = end;
     }
     return layers;
-}
-
-std::string counted(std::size_t number, std::string_view noun) {
-    return fmt::format("{} {}{}", number, noun, number == 1 ? "" : "s");
 }
 
 std::string summarize(const Toolpath& toolpath) {

@@ -6,13 +6,9 @@
 #include <array>
 #include <cstddef>
 #include <string>
-#include <string_view>
 #include <vector>
 
 namespace stratum::gcode {
-
-/// "1 layer", "2 layers".
-std::string counted(std::size_t number, std::string_view noun);
 
 /// Totals of one feature or object.
 struct FeatureTotal {

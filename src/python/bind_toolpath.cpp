@@ -10,6 +10,7 @@
 
 #include "base/checksum.h"
 #include "base/error.h"
+#include "base/human_text.h"
 #include "gcode/container/input_bytes.h"
 #include "gcode/summary.h"
 #include "gcode/toolpath/warning_log.h"
@@ -325,8 +326,8 @@ void addFacts(py::class_<ToolpathObject>& type) {
             }))
         .def("__len__", [](const ToolpathObject& self) { return self.toolpath->beads.size(); })
         .def("__repr__", [](const ToolpathObject& self) {
-            return fmt::format("<stratum.Toolpath: {} in {}>", gcode::counted(self.toolpath->beads.size(), "bead"),
-                               gcode::counted(self.toolpath->layer_count, "layer"));
+            return fmt::format("<stratum.Toolpath: {} in {}>", counted(self.toolpath->beads.size(), "bead"),
+                               counted(self.toolpath->layer_count, "layer"));
         });
 }
 

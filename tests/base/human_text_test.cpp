@@ -15,5 +15,11 @@ TEST(HumanText, ChoosesTheUnit) {
     EXPECT_EQ(humanCount(12.34e6), "12.3 M");
 }
 
+TEST(HumanText, OneAndMany) {
+    EXPECT_EQ(counted(0, "bead"), "0 beads");
+    EXPECT_EQ(counted(1, "bead"), "1 bead");
+    EXPECT_EQ(counted(2, "bead"), "2 beads");
+}
+
 }  // namespace
 }  // namespace stratum

@@ -10,6 +10,7 @@
 #include "base/atomic_file.h"
 #include "base/checksum.h"
 #include "base/error.h"
+#include "base/human_text.h"
 #include "deposit/read_print.h"
 #include "export/mesh_file.h"
 #include "export/nano_file.h"
@@ -131,12 +132,11 @@ void Conversion::tell() const {
         for (const gcode::Warning& warning : toolpath_.warnings) warn(gcode::describe(warning, file_.name()));
     if (!o_.dump_toolpath.empty()) gcode::writeToolpathCsv(toolpath_, o_.dump_toolpath);
     if (o_.common.quiet) return;
-    say(o_.common,
-        fmt::format("{}: {}, {}, {} ({}), {:.2f} m of filament, {:.2f} cm3", file_.name(),
-                    toolpath_.slicer.empty() ? "unknown slicer" : toolpath_.slicer,
-                    gcode::counted(toolpath_.layer_count, "layer"), gcode::counted(toolpath_.beads.size(), "bead"),
-                    gcode::counted(toolpath_.arcs.size(), "arc"), toolpath_.filament_mm * 1e-3,
-                    gcode::beadVolume(toolpath_) * 1e-3));
+    say(o_.common, fmt::format("{}: {}, {}, {} ({}), {:.2f} m of filament, {:.2f} cm3", file_.name(),
+                               toolpath_.slicer.empty() ? "unknown slicer" : toolpath_.slicer,
+                               counted(toolpath_.layer_count, "layer"), counted(toolpath_.beads.size(), "bead"),
+                               counted(toolpath_.arcs.size(), "arc"), toolpath_.filament_mm * 1e-3,
+                               gcode::beadVolume(toolpath_) * 1e-3));
     if (o_.summary) say(o_.common, gcode::summarize(toolpath_) + timeLines(*times_, estimate_, toolpath_.stated));
     if (o_.summary && flow_) say(o_.common, flowLine(*flow_));
     if (o_.summary && sag_) say(o_.common, sagLine(*sag_));

@@ -6,10 +6,7 @@
 #define STB_IMAGE_WRITE_IMPLEMENTATION
 #define STB_IMAGE_WRITE_STATIC
 #define STBI_WRITE_NO_STDIO
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wunused-function"  // the other formats
 #include <stb/stb_image_write.h>
-#pragma GCC diagnostic pop
 
 namespace stratum::assemble {
 

@@ -1,4 +1,5 @@
 #include "base/error.h"
+#include "base/human_text.h"
 #include "study/cost/own_process.h"
 #include "study/polygons/polygons.h"
 #include "study/polygons/print_measurement.h"
@@ -83,7 +84,7 @@ void introduce(Page& page, const Task& task, std::size_t prints, int threads) {
             : fmt::format("pictures were rendered with {} samples a pixel, and their time is told for {} in proportion",
                           task.shot.spp, kComparedSamples);
     page.paragraph(fmt::format(
-        "{} print{}, {}x{} pixels, {} by the same code for all, {}; {}. Times are of {} thread{}, CPU seconds where "
+        "{}, {}x{} pixels, {} by the same code for all, {}; {}. Times are of {}, CPU seconds where "
         "wall "
         "is not said. Reading the file is told apart: it is the same for all, and in no total. The level set has 2 "
         "voxels a layer where nothing else is said, and what the outside can't see is culled; on demand, its bricks "
@@ -92,8 +93,8 @@ void introduce(Page& page, const Task& task, std::size_t prints, int threads) {
         "are longer than eight widths; n-gons are prisms of n sides, cut likewise; both are traced by Embree, in "
         "packets "
         "of 16 where rays run side by side.",
-        prints, prints == 1 ? "" : "s", task.shot.width, task.shot.height, task.what, light, samples, threads,
-        threads == 1 ? "" : "s"));
+        counted(prints, "print"), task.shot.width, task.shot.height, task.what, light, samples,
+        counted(static_cast<std::size_t>(threads), "thread")));
     page.paragraph(fmt::format(
         "\"Convert\" is from beads to level set; \"build\" what rays need besides, the rays that find where the print "
         "stands among it, and on demand the making of bricks: what the picture takes more than the same picture again. "
