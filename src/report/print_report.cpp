@@ -168,15 +168,6 @@ private:
         addWalls(map, outside.get());
     }
 
-    // mm^3, of the plan fields where nearly all beads lie level, else of the level set (`measured`).
-    double plasticVolume(const voxelize::LayerStack& stack, double measured) const {
-        constexpr double kMostDirect = 0.01;  // of the deposited volume
-        double direct = 0;
-        for (const std::uint32_t bead : stack.direct()) direct += gcode::laidVolume(toolpath_, bead);
-        if (direct > kMostDirect * deposited_) return measured;
-        return voxelize::layersVolume(toolpath_, stack, std::numeric_limits<std::uint32_t>::max()) + direct;
-    }
-
     void addVolume(const SolidSums& sums, const voxelize::LayerStack& stack) {
         const double area = lattice_.voxel_size * lattice_.voxel_size;
         const double cell = area * lattice_.voxel_size;
@@ -197,7 +188,7 @@ private:
         }
         // Values between samples close narrow gaps: the level set holds a little more than the beads.
         const double enclosed = (sums.volume + open + closed) * cell;
-        const double plastic = plasticVolume(stack, sums.volume * cell);
+        const double plastic = voxelize::solidVolume(toolpath_, stack, std::numeric_limits<std::uint32_t>::max());
         const double pores = std::max(enclosed - plastic, 0.0);
         const double airtight = std::min(closed * cell, pores);
         add("plastic_volume", plastic);

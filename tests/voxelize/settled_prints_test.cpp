@@ -163,7 +163,8 @@ INSTANTIATE_TEST_SUITE_P(Prints, SettledOfSlicers,
                          testing::Values("preprocess_cancellation-cura.gcode", "preprocess_cancellation-slic3r.gcode",
                                          "preprocess_cancellation-superslicer.gcode", "libbgcode-mini_cube_a.gcode",
                                          "preprocess_cancellation-kirimoto.gcode", "slicercompare-bambu_plate_1.gcode",
-                                         "slicer-meta-orca_twocolors.gcode.3mf", "filaswitch-mc_testmodel1_S3D.gcode"),
+                                         "slicer-meta-orca_twocolors.gcode.3mf", "filaswitch-mc_testmodel1_S3D.gcode",
+                                         "slicer-meta-FlashPrint.gx"),
                          [](const auto& print) {
                              std::string name = print.param;
                              std::replace_if(

@@ -2,6 +2,7 @@
 
 #include "base/parallel_for.h"
 
+#include <limits>
 #include <mutex>
 #include <numbers>
 
@@ -102,6 +103,65 @@ double BeadField::distance(double x, double y, double z) const {
     if (half_side_ == 0) return std::sqrt(side * side + up * up) - radius_;
     const double over = std::abs(up) - half_side_;
     return std::hypot(side, std::max(over, 0.0)) + std::min(std::max(offset, over), 0.0) - radius_;
+}
+
+std::optional<Extent> BeadField::heights(double x, double y) const {
+    if (rod_) return rodHeights(x, y);
+    const double offset = planOffset(x, y);
+    if (!(offset < radius_)) return std::nullopt;
+    const double side = std::max(offset, 0.0);
+    const double half = half_side_ + std::sqrt((radius_ - side) * (radius_ + side));
+    const double middle = level_ ? zc0_ : std::lerp(zc0_, zc1_, path_.parameter(x, y));
+    return Extent{middle - (half + reach_) / cosine_, middle + half / cosine_};
+}
+
+// A capsule is the union of two balls and the cylinder between them, and convex: the lowest and the highest point of
+// all three bound what the line meets.
+std::optional<Extent> BeadField::rodHeights(double x, double y) const {
+    constexpr double kNone = std::numeric_limits<double>::infinity();
+    Extent met{kNone, -kNone};
+    const auto include = [&met](double low, double high) {
+        met.z_min = std::min(met.z_min, low);
+        met.z_max = std::max(met.z_max, high);
+    };
+    const auto ball = [&](double px, double py, double z) {
+        const double rest = radius_ * radius_ - px * px - py * py;
+        if (rest > 0) include(z - std::sqrt(rest), z + std::sqrt(rest));
+    };
+    const double px = x - x0_;
+    const double py = y - y0_;
+    ball(px, py, zc0_);
+    ball(px - dx_, py - dy_, zc1_);
+    const double dz = zc1_ - zc0_;
+    const double plan2 = dx_ * dx_ + dy_ * dy_;
+    const double length2 = plan2 + dz * dz;
+    if (length2 > 0) {
+        // With z from the start and t = (px dx + py dy + z dz)/length^2: |p|^2 - t^2 length^2 <= radius^2, 0 <= t <= 1.
+        const double along = px * dx_ + py * dy_;
+        const double across2 = plan2 > 0 ? (px * dy_ - py * dx_) * (px * dy_ - py * dx_) / plan2 : px * px + py * py;
+        const double rest = radius_ * radius_ - across2;
+        if (rest > 0) {
+            double low = -kNone;
+            double high = kNone;
+            if (plan2 > 0) {
+                const double middle = along * dz / plan2;
+                const double half = std::sqrt(rest * length2 / plan2);
+                low = middle - half;
+                high = middle + half;
+            }
+            if (dz != 0) {
+                const double from = -along / dz;
+                const double to = (length2 - along) / dz;
+                low = std::max(low, std::min(from, to));
+                high = std::min(high, std::max(from, to));
+            } else if (along < 0 || along > length2) {
+                high = -kNone;
+            }
+            if (low < high) include(zc0_ + low, zc0_ + high);
+        }
+    }
+    if (!(met.z_min < met.z_max)) return std::nullopt;
+    return met;
 }
 
 Bounds BeadField::bounds() const {

@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <optional>
 #include <span>
 
 namespace stratum::voxelize {
@@ -30,6 +31,11 @@ struct Bounds {
     }
     double extent(int axis) const { return max[axis] - min[axis]; }
     double center(int axis) const { return 0.5 * (min[axis] + max[axis]); }
+};
+
+/// From a lowest to a highest point of a bead's solid, mm.
+struct Extent {
+    double z_min = 0, z_max = 0;
 };
 
 /// Cross-section of a bead: the flats reach half_flat to each side of the path, the corners have `radius`, the straight
@@ -77,6 +83,9 @@ public:
     /// Signed distance (mm, negative inside) at a point of print space (mm).
     double distance(double x, double y, double z) const;
 
+    /// What a vertical line meets of the solid: one piece, for the solid is convex along z. Nothing if it misses.
+    std::optional<Extent> heights(double x, double y) const;
+
     /// Box of the solid, mm.
     Bounds bounds() const;
     /// Box of the solid turned by `tilt` degrees about x, mm: as tight as bounds(), but of helices.
@@ -99,6 +108,8 @@ public:
     double reach() const { return reach_; }
 
 private:
+    std::optional<Extent> rodHeights(double x, double y) const;
+
     gcode::PlanPath path_;
     double half_flat_, radius_, half_side_;
     EndFlats flats_;

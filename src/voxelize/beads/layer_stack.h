@@ -2,6 +2,7 @@
 #pragma once
 
 #include "gcode/toolpath/toolpath.h"
+#include "voxelize/beads/bead_field.h"
 #include "voxelize/beads/settling.h"
 
 #include <cstdint>
@@ -42,11 +43,6 @@ struct Weld {
 
 /// Planes closer than this fraction of the thinner layer's height touch (slicers print Z with three decimals).
 constexpr double kWeldGap = 0.02;
-
-/// From the lowest to the highest point of a bead's solid, mm.
-struct Extent {
-    double z_min = 0, z_max = 0;
-};
 
 /// The selected beads, ordered by layer. A bead's rank is its index in this order; bins and columns refer to it.
 struct LayerStack {

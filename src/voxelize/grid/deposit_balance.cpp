@@ -1,5 +1,6 @@
 #include "voxelize/grid/deposit_balance.h"
 
+#include "voxelize/beads/bead_field.h"
 #include "voxelize/leaf/print_columns.h"
 #include "voxelize/swell/open_top.h"
 
@@ -9,6 +10,8 @@
 #include <atomic>
 #include <cmath>
 #include <limits>
+#include <optional>
+#include <utility>
 
 namespace stratum::voxelize {
 namespace {
@@ -85,12 +88,15 @@ struct Sums {
     std::vector<Pressed> pressed;
 };
 
-// The intervals of heights that layers have over the points of a column, joined.
-struct JoinedLayers {
+// The intervals of heights that the beads of a column have over its points, joined.
+class JoinedHeights {
+public:
     double heights = 0;  // mm, of the union over all points
-    double shared = 0;   // mm, of what layers have twice
+    double shared = 0;   // mm, of what there is twice
 
-    JoinedLayers() { top_.fill(std::numeric_limits<double>::lowest()); }
+    explicit JoinedHeights(const LeafColumn& column) : keep_(column.hasDirect()) {
+        top_.fill(std::numeric_limits<double>::lowest());
+    }
 
     void add(const LeafColumn::LayerPlan& plan) {
         for (std::size_t c = 0; c < kColumnSamples; ++c) {
@@ -100,6 +106,7 @@ struct JoinedLayers {
             const double low = plan.layer->center_z - half;
             const double flat = plan.layer->center_z + half;
             const double top = flat + riseAt(plan, c, held);
+            if (keep_) pieces_.push_back({c, {low, top}});
             if (low >= top_[c]) {
                 heights += top - low;
                 low_[c] = low;
@@ -115,7 +122,52 @@ struct JoinedLayers {
         }
     }
 
+    // The sloped and round beads of the column, after its layers. Calls own(bead, heights) with the mm over all points
+    // that each has.
+    template <typename Own>
+    void addDirect(const gcode::Toolpath& toolpath, const LeafColumn& column, const Own& own) {
+        if (!keep_) return;
+        double sum = heights;
+        column.forEachDirect([&](std::uint32_t bead) {
+            const BeadField field(toolpath, toolpath.beads[bead]);
+            double has = 0;
+            for (std::size_t c = 0; c < kColumnSamples; ++c) {
+                const gcode::PlanPoint at = column.sample(c);
+                const std::optional<Extent> met = field.heights(at.x, at.y);
+                if (!met) continue;
+                has += met->z_max - met->z_min;
+                pieces_.push_back({c, *met});
+            }
+            sum += has;
+            if (has > 0) own(bead, has);
+        });
+        heights = joinPieces();
+        shared += sum - heights;
+    }
+
 private:
+    struct Piece {
+        std::size_t point = 0;
+        Extent extent;
+    };
+    double joinPieces() {
+        std::sort(pieces_.begin(), pieces_.end(), [](const Piece& a, const Piece& b) {
+            return std::pair{a.point, a.extent.z_min} < std::pair{b.point, b.extent.z_min};
+        });
+        double sum = 0;
+        std::size_t point = kColumnSamples;  // none
+        double top = 0;
+        for (const Piece& piece : pieces_) {
+            if (piece.point != point) top = std::numeric_limits<double>::lowest();
+            point = piece.point;
+            sum += std::max(piece.extent.z_max - std::max(piece.extent.z_min, top), 0.0);
+            top = std::max(top, piece.extent.z_max);
+        }
+        return sum;
+    }
+
+    const bool keep_;  // only where sloped and round beads will be added
+    std::vector<Piece> pieces_;
     std::array<double, kColumnSamples> low_{}, top_{}, flat_{};
 };
 
@@ -166,7 +218,7 @@ DepositBalance balanceDeposit(const gcode::Toolpath& toolpath, const LayerStack&
         Sums& sums = threads.local();
         sums.tops.clear();
         sums.pressed.clear();
-        JoinedLayers joined;
+        JoinedHeights joined(column);
         column.forEachLayer([&](const LeafColumn::LayerPlan& plan) {
             joined.add(plan);
             addLayer(stack, plan, point_area, sums.shares, [&](std::uint32_t bead, double volume) {
@@ -176,6 +228,9 @@ DepositBalance balanceDeposit(const gcode::Toolpath& toolpath, const LayerStack&
             const Pressed& pressed = sums.pressed.emplace_back(pressedOf(plan));
             sums.pressed_out += unitsOf(pressed.out * point_area);
             addTop(static_cast<std::uint32_t>(plan.layer - stack.layers.data()), pressed.solid, sums.tops);
+        });
+        joined.addDirect(toolpath, column, [&](std::uint32_t bead, double heights) {
+            sums.add(toolpath.runOf(toolpath.beads[bead]), heights * point_area);
         });
         sums.shared += unitsOf(joined.shared * point_area);
         if (stack.swell != nullptr) sums.raised += unitsOf(raisedIn(stack, sums.tops, sums.pressed) * point_area);
@@ -191,10 +246,7 @@ DepositBalance balanceDeposit(const gcode::Toolpath& toolpath, const LayerStack&
     }
     for (std::uint32_t rank = 0; rank < stack.beads.size(); ++rank) {
         if (stack.beads[rank] >= end) continue;
-        const gcode::Run& run = toolpath.runOf(toolpath.beads[stack.beads[rank]]);
-        const double volume = gcode::laidVolume(toolpath, stack.beads[rank]);
-        fed.add(run, volume);
-        if (rank >= stack.first_direct) laid.add(run, volume);
+        fed.add(toolpath.runOf(toolpath.beads[stack.beads[rank]]), gcode::laidVolume(toolpath, stack.beads[rank]));
     }
     DepositBalance balance;
     balance.layers.resize(layers);
@@ -211,12 +263,13 @@ DepositBalance balanceDeposit(const gcode::Toolpath& toolpath, const LayerStack&
     return balance;
 }
 
-double layersVolume(const gcode::Toolpath& toolpath, const LayerStack& stack, std::uint32_t end) {
+double solidVolume(const gcode::Toolpath& toolpath, const LayerStack& stack, std::uint32_t end) {
     std::atomic<std::int64_t> sum{0};
     const double point_area = pointArea(measuringLattice());
     forEachOpenColumn(toolpath, stack, end, [&](LeafColumn& column) {
-        JoinedLayers joined;
+        JoinedHeights joined(column);
         column.forEachLayer([&](const LeafColumn::LayerPlan& plan) { joined.add(plan); });
+        joined.addDirect(toolpath, column, [](std::uint32_t, double) {});
         sum.fetch_add(unitsOf(joined.heights * point_area), std::memory_order_relaxed);
     });
     return static_cast<double>(sum.load()) * kUnit;

@@ -98,6 +98,17 @@ public:
     void forEachLayer(Visit visit) {
         for (const ColumnLayer& source : column_layers_) visit(planLayer(source));
     }
+    /// Calls visit(bead) for each sloped or round bead of the open column: its index in the toolpath.
+    template <typename Visit>
+    void forEachDirect(Visit visit) const {
+        for (const DirectBead& direct : direct_) visit(stack_.beads[direct.rank]);
+    }
+    bool hasDirect() const { return !direct_.empty(); }
+    /// Of the plan fields' value c, mm.
+    gcode::PlanPoint sample(std::size_t c) const {
+        return {middle_x_ + static_cast<double>(grid_.qx.v[c]) / scale_,
+                middle_y_ + static_cast<double>(grid_.qy.v[c]) / scale_};
+    }
     /// Calls visit(layer, d) for each layer of the open column, from the lowest: its index in LayerStack::layers, and
     /// the plan distance beyond its flats as the level set has it, after settling. Only of a column of which no leaf is
     /// evaluated.

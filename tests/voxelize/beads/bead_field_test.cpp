@@ -69,6 +69,60 @@ TEST(BeadField, SteepAndRoundSlopesAreRods) {
     EXPECT_NEAR(round.distance(4, 0, 2.9 + 0.5), 0.5 * 8 / std::hypot(8, 4) - 0.075, 1e-6);
 }
 
+// Along vertical lines through beads of all kinds the field is negative between both heights alone.
+TEST(BeadField, HeightsAreWhereTheFieldIsNegative) {
+    std::mt19937 random(11);
+    std::uniform_real_distribution<double> where(-2, 2);
+    std::uniform_real_distribution<double> size(0.1, 1.2);
+    int met = 0;
+    for (int n = 0; n < 400; ++n) {
+        gcode::Toolpath toolpath;
+        if (n % 4 == 0) toolpath.deposit.corner_fraction = 0.5;
+        const double x = where(random);
+        const double y = where(random);
+        const double z = where(random);
+        switch (n % 5) {
+            case 0:
+                addBead(toolpath, x, y, z, where(random), where(random), z, size(random), size(random));
+                break;
+            case 1:
+                addBead(toolpath, x, y, z, x, y, z + 1.5, size(random), size(random));
+                break;  // upright
+            case 2:
+                addArc(toolpath, x, y, 1.5, where(random), 2 * where(random), z, z + where(random), size(random),
+                       size(random));
+                break;
+            case 3:
+                addBead(toolpath, x, y, z, x, y, z, size(random), size(random));
+                break;  // a point
+            default:
+                addBead(toolpath, x, y, z, where(random), where(random), where(random), size(random), size(random));
+        }
+        const BeadField field(toolpath, toolpath.beads[0]);
+        const Bounds box = field.bounds();
+        for (int k = 0; k < 60; ++k) {
+            const double px = 1.5 * where(random);
+            const double py = 1.5 * where(random);
+            const std::optional<Extent> extent = field.heights(px, py);
+            constexpr double kEdge = 1e-9;
+            if (extent) {
+                ++met;
+                EXPECT_LE(field.distance(px, py, extent->z_min), kEdge);
+                EXPECT_LE(field.distance(px, py, 0.5 * (extent->z_min + extent->z_max)), kEdge);
+                EXPECT_LE(field.distance(px, py, extent->z_max), kEdge);
+            }
+            for (double at = box.min[2] - 0.1; at < box.max[2] + 0.1; at += 0.013) {
+                const bool inside = extent && at > extent->z_min + 1e-6 && at < extent->z_max - 1e-6;
+                const bool outside = !extent || at < extent->z_min - 1e-6 || at > extent->z_max + 1e-6;
+                const double value = field.distance(px, py, at);
+                if (inside) EXPECT_LT(value, 0) << n << " at " << at;
+                if (outside) EXPECT_GT(value, 0) << n << " at " << at;
+            }
+        }
+    }
+    EXPECT_GT(met, 2000);
+}
+
 TEST(BeadField, BoundsHoldTheSolid) {
     std::mt19937 random(7);
     std::uniform_real_distribution<double> where(-3, 3);

@@ -1,5 +1,6 @@
-// Volumes of layers' plans against closed forms and against fine level sets.
+// Volumes of all beads together against closed forms and against fine level sets.
 #include "toolpaths.h"
+#include "voxelize/beads/bead_field.h"
 #include "voxelize/beads/selection.h"
 #include "voxelize/grid/deposit_balance.h"
 #include "voxelize/grid/enclosed_volume.h"
@@ -7,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <numbers>
 
 namespace stratum::voxelize {
@@ -15,7 +17,7 @@ namespace {
 constexpr double kBeadWidth = 0.45;
 
 double volumeOf(const gcode::Toolpath& toolpath) {
-    return layersVolume(toolpath, stackLayers(toolpath, test::allBeads(toolpath)), 0xffffffff);
+    return solidVolume(toolpath, stackLayers(toolpath, test::allBeads(toolpath)), 0xffffffff);
 }
 double levelSetVolumeOf(const gcode::Toolpath& toolpath, double voxel) {
     const auto beads = test::allBeads(toolpath);
@@ -25,7 +27,7 @@ double levelSetVolumeOf(const gcode::Toolpath& toolpath, double voxel) {
     return enclosedVolume(*Voxelizer(toolpath, beads, lattice).printAll());
 }
 
-TEST(LayersVolume, OfABeadIsItsSectionAndTwoHalfDiscs) {
+TEST(SolidVolume, OfABeadIsItsSectionAndTwoHalfDiscs) {
     constexpr double kHeight = 0.2;
     constexpr double kRadius = kHeight / 2;
     constexpr double kFlat = kBeadWidth / 2 - kRadius;
@@ -38,7 +40,7 @@ TEST(LayersVolume, OfABeadIsItsSectionAndTwoHalfDiscs) {
 }
 
 // Under a bridge's thick line that lies on a layer, and where a layer's lines cross: once.
-TEST(LayersVolume, CountsWhatBeadsShareOnce) {
+TEST(SolidVolume, CountsWhatBeadsShareOnce) {
     gcode::Toolpath toolpath;
     for (double y = 0; y < 3; y += 0.407) test::addBead(toolpath, 0, y, 0.2, 6, y, 0.2, kBeadWidth, 0.2);
     test::addBead(toolpath, 1, -0.5, 0.4, 4, 3.5, 0.4, 0.5, 0.4, 2);
@@ -48,7 +50,7 @@ TEST(LayersVolume, CountsWhatBeadsShareOnce) {
     EXPECT_LT(volumeOf(toolpath), 0.97 * gcode::beadVolume(toolpath));
 }
 
-TEST(LayersVolume, IsThatOfTheSettledLevelSet) {
+TEST(SolidVolume, IsThatOfTheSettledLevelSet) {
     gcode::Toolpath toolpath;
     for (int layer = 1; layer <= 2; ++layer)
         for (double y = 0; y < 4; y += 0.39)
@@ -61,6 +63,46 @@ TEST(LayersVolume, IsThatOfTheSettledLevelSet) {
     const DepositBalance balance =
         balanceDeposit(toolpath, stackLayers(toolpath, test::allBeads(toolpath)), 0xffffffff);
     EXPECT_NEAR(volumeOf(toolpath), balance.held(), 2e-3 * balance.held());
+}
+
+TEST(SolidVolume, OfASteepLineIsACapsule) {
+    gcode::Toolpath toolpath;
+    test::addBead(toolpath, 0.3, 0.1, 1, 2.1, 1.2, 6, kBeadWidth, 0.2);
+    const double radius = BeadField(toolpath, toolpath.beads[0]).radius();
+    const double length = std::hypot(1.8, 1.1, 5);
+    const double expected = std::numbers::pi * radius * radius * (length + 4 * radius / 3);
+    EXPECT_NEAR(volumeOf(toolpath), expected, 5e-3 * expected);
+}
+
+// A thread that hangs between two blocks of layers, whose ends lie in them.
+TEST(SolidVolume, CountsEndsOfSlopedBeadsInLayersOnce) {
+    gcode::Toolpath toolpath;
+    for (const double x : {0.0, 9.0})
+        for (int layer = 1; layer <= 4; ++layer)
+            for (double y = 0; y < 2; y += 0.407)
+                test::addBead(toolpath, x, y, 0.2 * layer, x + 2, y, 0.2 * layer, kBeadWidth, 0.2,
+                              static_cast<std::uint32_t>(layer));
+    test::addBead(toolpath, 0.2, 0.9, 0.8, 5.5, 1, 0.5, kBeadWidth, 0.3, 4);
+    test::addBead(toolpath, 5.5, 1, 0.5, 10.8, 0.9, 0.8, kBeadWidth, 0.3, 4);
+    const double whole = levelSetVolumeOf(toolpath, 0.0125);
+    EXPECT_NEAR(volumeOf(toolpath), whole, 3e-3 * whole);
+    const DepositBalance balance =
+        balanceDeposit(toolpath, stackLayers(toolpath, test::allBeads(toolpath)), 0xffffffff);
+    EXPECT_NEAR(balance.held(), volumeOf(toolpath), 1e-6 * whole);
+    EXPECT_GT(balance.shared, 0.2);
+}
+
+// Turns of a spiral overlap by what welds them.
+TEST(SolidVolume, OfASpiral) {
+    gcode::Toolpath toolpath;
+    constexpr int kSides = 40;
+    const auto corner = [](int n) { return 2 * std::numbers::pi * n / kSides; };
+    for (int n = 0; n < 4 * kSides; ++n)
+        test::addBead(toolpath, 5 * std::cos(corner(n)), 5 * std::sin(corner(n)), 0.2 + 0.2 * n / kSides,
+                      5 * std::cos(corner(n + 1)), 5 * std::sin(corner(n + 1)), 0.2 + 0.2 * (n + 1) / kSides,
+                      kBeadWidth, 0.2);
+    const double whole = levelSetVolumeOf(toolpath, 0.0125);
+    EXPECT_NEAR(volumeOf(toolpath), whole, 3e-3 * whole);
 }
 
 }  // namespace
