@@ -1,6 +1,7 @@
 #include "voxelize/swell/tile_sums.h"
 
 #include "voxelize/leaf/leaf_column.h"
+#include "voxelize/swell/direct_overlap.h"
 #include "voxelize/swell/fed_volume.h"
 #include "voxelize/swell/node_sums.h"
 #include "voxelize/swell/open_top.h"
@@ -54,10 +55,12 @@ public:
 
     // Returns the points with plastic, bit c for point c.
     // `tops`: if not null, the highest plastic of the layers below at each point, mm: what this layer shares with them
-    // it does not hold. The layer's own is added. `sums`: null for a layer of another tile.
-    std::uint64_t add(const Layer& layer, const PlanField& sides2, int first_node, WholeLayer* sums,
-                      PlanField* tops) const {
+    // it does not hold. The layer's own is added. `direct`: likewise, if not null. `sums`: null for a layer of another
+    // tile.
+    std::uint64_t add(const Layer& layer, const PlanField& sides2, int first_node, WholeLayer* sums, PlanField* tops,
+                      const DirectOverlap* direct) const {
         thread_local PressedLayer pressed;
+        PlanField shared_with_direct;
         const auto radius = static_cast<float>(layer.radius);
         const auto straight = static_cast<float>(2 * layer.half_side);
         pressLayer(sides2, radius, straight, pressed);
@@ -65,7 +68,7 @@ public:
         if (pressed.kind == PressedLayer::Kind::flat) {
             pressed.solid = kAllPoints;
             const float held = straight + 2 * radius;
-            if (tops == nullptr) {
+            if (tops == nullptr && direct == nullptr) {
                 if (sums != nullptr)
                     addFlat(
                         first_node, [&](std::size_t node) -> float& { return sums->nodes[node].surplus; }, -held);
@@ -74,7 +77,11 @@ public:
             for (PlanField& gain : pressed.fields) gain = {};
             std::fill(std::begin(pressed.fields[0].v), std::end(pressed.fields[0].v), -held);
         }
+        if (direct != nullptr) direct->share(layer, pressed.fields, shared_with_direct);
         if (tops != nullptr) takeShared(layer, pressed.fields[0], *tops);
+        if (direct != nullptr)
+            for (std::size_t c = 0; c < kColumnSamples; ++c)
+                pressed.fields[0].v[c] = std::min(pressed.fields[0].v[c] + shared_with_direct.v[c], 0.0F);
         if (sums != nullptr)
             nodes_.add(pressed.fields, &sums->nodes[static_cast<std::size_t>(first_node)].surplus, kRow);
         return pressed.solid;
@@ -234,6 +241,17 @@ public:
           last_(static_cast<std::uint32_t>(std::min<std::size_t>(first_ + kTileLayers, stack.layers.size()))) {}
 
     bool owns(std::uint32_t layer) const { return layer >= first_ && layer < last_; }
+    // mm, of the tile's own layers.
+    double bottom() const {
+        double bottom = std::numeric_limits<double>::max();
+        for (std::uint32_t n = first_; n < last_; ++n) bottom = std::min(bottom, stack_.layers[n].bottom());
+        return bottom;
+    }
+    double top() const {
+        double top = std::numeric_limits<double>::lowest();
+        for (std::uint32_t n = first_; n < last_; ++n) top = std::max(top, stack_.layers[n].top());
+        return top;
+    }
     std::uint32_t firstRank() const { return stack_.layers[first_].first; }
     std::uint32_t lastRank() const { return stack_.layers[last_ - 1].last; }
     bool needs(std::uint32_t layer) const {
@@ -279,6 +297,7 @@ TileSums sumTile(const gcode::Toolpath& toolpath, const LayerStack& stack, const
     const Lattice lattice = cellLattice();
     const TileLayers own(stack, needs, place);
     LeafColumn column(toolpath, stack, lattice, 1, LeafColumn::Kind::spread_without_swell);
+    DirectOverlap direct(toolpath, stack, own.bottom(), own.top());
     thread_local std::array<WholeLayer, kTileLayers> whole;
     const auto sumsOf = [](std::uint32_t layer) -> WholeLayer& {
         WholeLayer& sums = whole[layer % kTileLayers];
@@ -300,6 +319,7 @@ TileSums sumTile(const gcode::Toolpath& toolpath, const LayerStack& stack, const
             own_ranks.add(near);
             column.open(bins.originI(bin), bins.originJ(bin), own.neededOf(bins[bin], near),
                         std::numeric_limits<std::uint32_t>::max());
+            direct.gather(column, bins[bin]);
             const int first_node = kSquareCells * (cj * kNodes + ci);
             if (needs.anyOverlap())
                 std::fill(std::begin(highest.v), std::end(highest.v), std::numeric_limits<float>::lowest());
@@ -309,7 +329,8 @@ TileSums sumTile(const gcode::Toolpath& toolpath, const LayerStack& stack, const
                 const Layer& of = stack.layers[layer];
                 WholeLayer* const sums = own.owns(layer) ? &sumsOf(layer) : nullptr;
                 PlanField* const tops_below = needs.takes(layer) || needs.gives(layer) ? &highest : nullptr;
-                const std::uint64_t solid = kSums.add(of, sides2, first_node, sums, tops_below);
+                const DirectOverlap* const met = sums != nullptr && direct.meets(of) ? &direct : nullptr;
+                const std::uint64_t solid = kSums.add(of, sides2, first_node, sums, tops_below, met);
                 if (solid == 0) return;
                 addTop(layer, solid, tops);
                 if (sums == nullptr || !(of.crown > 0)) return;
@@ -318,9 +339,10 @@ TileSums sumTile(const gcode::Toolpath& toolpath, const LayerStack& stack, const
             });
             coverTops(stack, tops);
             for (std::size_t n = 0; n < tops.size(); ++n) {
-                const OpenTop& top = tops[n];
+                OpenTop& top = tops[n];
                 if (!own.owns(top.layer)) continue;
                 const Layer& of = stack.layers[top.layer];
+                if (direct.meets(of)) top.open &= ~direct.covered(of);
                 kSums.addTop(of, top.solid, top.open, of.crown > 0 ? &fields[n] : nullptr, first_node,
                              sumsOf(top.layer));
             }

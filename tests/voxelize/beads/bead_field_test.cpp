@@ -120,7 +120,7 @@ TEST(BeadField, HeightsAreWhereTheFieldIsNegative) {
             }
         }
     }
-    EXPECT_GT(met, 2000);
+    EXPECT_GT(met, 800);
 }
 
 TEST(BeadField, BoundsHoldTheSolid) {
