@@ -1,5 +1,7 @@
 #include "voxelize/swell/direct_overlap.h"
 
+#include "voxelize/swell/fed_volume.h"
+
 #include <algorithm>
 #include <limits>
 #include <optional>
@@ -15,15 +17,16 @@ void DirectOverlap::gather(const LeafColumn& column, std::span<const std::uint32
     for (const std::uint32_t rank : std::span(direct, ranks.end())) {
         const Extent& whole = stack_.extentOf(rank);
         if (whole.z_max <= low_ || whole.z_min >= high_) continue;
-        const BeadField field(toolpath_, toolpath_.beads[stack_.beads[rank]]);
-        // Where the flow is simulated, the ends of level beads are part of what was fed.
-        const bool ends_too = !(field.path().length() > 0) || (!toolpath_.flow.empty() && field.level());
+        const std::uint32_t bead = stack_.beads[rank];
+        const BeadField field(toolpath_, toolpath_.beads[bead]);
+        const bool place = !(field.path().length() > 0);
+        const FedEnds fed = field.level() ? fedEnds(toolpath_, bead) : FedEnds{};
         for (std::uint32_t c = 0; c < kColumnSamples; ++c) {
             const gcode::PlanPoint at = column.sample(c);
             const std::optional<Extent> extent = field.heights(at.x, at.y);
             if (!extent) continue;
             const double along = field.path().parameter(at.x, at.y);
-            if (!ends_too && (along <= 0 || along >= 1)) continue;
+            if (!place && ((along <= 0 && !fed.start) || (along >= 1 && !fed.end))) continue;
             pieces_.push_back({c, *extent});
             lowest_ = std::min(lowest_, extent->z_min);
             highest_ = std::max(highest_, extent->z_max);

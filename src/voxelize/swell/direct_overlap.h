@@ -11,8 +11,8 @@
 
 namespace stratum::voxelize {
 
-/// The sloped and round beads over the points of one column after the other. Their round ends are left out: they hold
-/// more than was fed.
+/// The sloped and round beads over the points of one column after the other. Round ends that hold more than was fed are
+/// left out.
 class DirectOverlap {
 public:
     /// Beads that reach between `low` and `high`, mm. The references must outlive the object.

@@ -30,6 +30,17 @@ Place placeAt(const gcode::PlanPath& path, double t, double length) {
 
 }  // namespace
 
+FedEnds fedEnds(const gcode::Toolpath& toolpath, std::uint32_t index) {
+    if (toolpath.flow.empty()) return {};
+    const auto meets = [&toolpath](std::uint32_t first) {
+        constexpr double kSame = 1e-4;  // mm
+        const gcode::Bead& a = toolpath.beads[first];
+        const gcode::Bead& b = toolpath.beads[first + 1];
+        return std::hypot(double{a.x1} - double{b.x0}, double{a.y1} - double{b.y0}) < kSame && a.z1 == b.z0;
+    };
+    return {index == 0 || !meets(index - 1), index + 1 == toolpath.beads.size() || !meets(index)};
+}
+
 FedVolume::FedVolume(const gcode::Toolpath& toolpath, const LayerStack& stack, TilePlace place)
     : toolpath_(toolpath), stack_(stack), first_x_(place.x * kSumCells), first_y_(place.y * kSumCells) {}
 
@@ -68,19 +79,14 @@ double FedVolume::feedEnds(std::uint32_t index, double volume, const gcode::Plan
                            std::span<TileSums::Node> nodes) const {
     const gcode::Bead& bead = toolpath_.beads[index];
     const double discs = volume - gcode::beadVolume(toolpath_, bead);
-    if (toolpath_.flow.empty() || !(path.length() > 0) || !(discs > 0) || discs > 0.5 * volume) return 0;
-    const auto meets = [](const gcode::Bead& a, const gcode::Bead& b) {
-        constexpr double kSame = 1e-4;  // mm
-        return std::hypot(double{a.x1} - double{b.x0}, double{a.y1} - double{b.y0}) < kSame && a.z1 == b.z0;
-    };
-    const bool free_start = index == 0 || !meets(toolpath_.beads[index - 1], bead);
-    const bool free_end = index + 1 == toolpath_.beads.size() || !meets(bead, toolpath_.beads[index + 1]);
-    const int ends = (free_start ? 1 : 0) + (free_end ? 1 : 0);
+    if (!(path.length() > 0) || !(discs > 0) || discs > 0.5 * volume) return 0;
+    const FedEnds fed = fedEnds(toolpath_, index);
+    const int ends = (fed.start ? 1 : 0) + (fed.end ? 1 : 0);
     if (ends == 0) return 0;
     const double width = static_cast<double>(bead.width);
     const double past = 2 * width / (3 * std::numbers::pi);  // the centroid of a half disc
     for (const bool at_end : {false, true}) {
-        if (!(at_end ? free_end : free_start)) continue;
+        if (!(at_end ? fed.end : fed.start)) continue;
         const Place place = placeAt(path, at_end ? 1 : 0, 0);
         const double sign = at_end ? past : -past;
         for (const double side : kAcross) {

@@ -11,6 +11,13 @@
 
 namespace stratum::voxelize {
 
+/// At which ends of its path the half discs of a bead are part of its volume: those that meet no other bead, where the
+/// flow is simulated.
+struct FedEnds {
+    bool start = false, end = false;
+};
+FedEnds fedEnds(const gcode::Toolpath& toolpath, std::uint32_t index);
+
 /// Lays volumes of beads along their paths, evenly over the width of a box of their height. Of one tile of sums.
 class FedVolume {
 public:
