@@ -59,6 +59,8 @@ void FedVolume::feed(std::uint32_t rank, std::span<TileSums::Node> nodes) const 
     const double width = along / (height * length);
     const int steps = std::max(static_cast<int>(std::ceil(length / kStep)), 1);
     const double part = along / (steps * static_cast<double>(kAcross.size()));
+    // Of a bead that widens, the change from its start to its end as a share of its section.
+    const double change = bead.arc < 0 && width > 0 ? gcode::widening(toolpath_, bead) / width : 0;
     const auto [from, to] = stepsInTile(bead, length, width, steps);
     const bool line = path.straight() && path.length() > 0;
     const Place start = placeAt(path, 0, length);
@@ -68,9 +70,10 @@ void FedVolume::feed(std::uint32_t rank, std::span<TileSums::Node> nodes) const 
         const double mm = t * length;
         const Place place = line ? Place{start.x + mm * start.ux, start.y + mm * start.uy, start.ux, start.uy}
                                  : placeAt(path, t, length);
+        const double here = part * (1 + change * (t - 0.5));
         for (const double side : kAcross) {
             const double aside = side * width;
-            addPoint(place.x - aside * place.uy, place.y + aside * place.ux, part, nodes);
+            addPoint(place.x - aside * place.uy, place.y + aside * place.ux, here, nodes);
         }
     }
 }
