@@ -152,8 +152,9 @@ TEST_P(SettledPrint, SurplusFindsAPlace) {
     std::printf("  %s: fed %.2f mm3, grooves hold %.2f %%, with outlines pressed out %+.2f %%\n", GetParam().name,
                 balance.all.fed, -100 * balance.all.surplus() / balance.all.fed,
                 -100 * balance.unplaced() / balance.all.fed);
-    // Hull: 0.51 %.
-    EXPECT_NEAR(balance.held(), balance.all.fed, 5.5e-3 * balance.all.fed);
+    // 0.51 and 0.57 % of hull have no place.
+    const double most = std::string_view(GetParam().name).starts_with("hull") ? 6e-3 : 5e-3;
+    EXPECT_NEAR(balance.held(), balance.all.fed, most * balance.all.fed);
     EXPECT_GT(balance.pressed_out, 0.8 * balance.all.surplus());
 }
 

@@ -7,9 +7,10 @@
 // A layer's plan distance u becomes u - swell, and what is above its center plane is moved up by the rise (mm). Both
 // are interpolated between nodes kNodeSpacing apart, by nodeShare() along each axis:
 //   1. Sums over each node's tent (its weight in that), by kColumnSamples points of a lattice rule in each
-//      square of two by two cells: what was fed, by the beads' exact volumes along their paths; what the layer holds;
-//      what it gains if its outlines move out by each of TileSums::kSwells; and the area of its top, as far as no layer
-//      is welded to it from above.
+//      square of two by two cells: what was fed, by the beads' exact volumes along their paths; what the layer holds,
+//      without what it shares with layers before it and with sloped and round beads (direct_overlap.h); what it gains
+//      if its outlines move out by each of TileSums::kSwells; and the area of its top, as far as no layer is welded to
+//      it from above.
 //   2. Each node's surplus is given to the nodes within kNear cells, in proportion to a tent and to what they can gain.
 //   3. What is left raises the open tops within kUp cells, by Layer::most_rise at most.
 //   4. What is left then goes to what can gain within kFar cells, and what a node holds more than it was fed is taken

@@ -377,6 +377,17 @@ TEST(SwellField, WhatRoundAndSlopedBeadsShareFindsAPlace) {
     }
 }
 
+TEST(SwellField, AWideningLineIsNotPressedOut) {
+    gcode::Toolpath toolpath;
+    test::addBead(toolpath, 0.1, 0.2, kHeight, 28, 3.2, kHeight, kWidth, kHeight);
+    const double fed = gcode::beadVolume(toolpath);
+    toolpath.flow.push_back({static_cast<float>(fed), 0, 0.06F});
+    const DepositBalance balance = balanceOf(toolpath);
+    EXPECT_NEAR(balance.all.fed, fed, 1e-4 * fed);
+    // Laid evenly along the line, 3 % of it would be.
+    EXPECT_LT(balance.pressed_out, 6e-3 * fed);
+}
+
 TEST(SwellField, FarCopiesHoldWhatOneDoes) {
     gcode::Toolpath one = sparse();
     const DepositBalance single = balanceOf(one);
