@@ -104,10 +104,14 @@ export class Answer {
   draw() {
     const { camera, aspect } = this.page;
     const canvas = byId("marks");
+    const context = canvas.getContext("2d");
+    const wanted = this.lines || (camera && (this.head || this.points.length));
+    if (!wanted && canvas.hidden) return;
+    canvas.hidden = !wanted; // an empty canvas costs a pass over the picture, too
+    if (!wanted) return context.clearRect(0, 0, canvas.width, canvas.height);
     const ratio = pixelRatio();
     canvas.width = Math.round(canvas.clientWidth * ratio);
     canvas.height = Math.round(canvas.clientHeight * ratio);
-    const context = canvas.getContext("2d");
     if (this.lines) {
       context.scale(1, -1);
       context.drawImage(this.lines, 0, -canvas.height, canvas.width, canvas.height);

@@ -2,6 +2,11 @@
 
 export const byId = (id) => document.getElementById(id);
 
+/** Nothing is laid out and painted anew where the text is what it was: while the view turns, that is every frame. */
+export function setText(place, text) {
+  if (place.textContent !== text) place.textContent = text;
+}
+
 /** Pixels of a picture by those of CSS; more than two are not seen. */
 export const pixelRatio = () => Math.min(2, devicePixelRatio || 1);
 

@@ -3,7 +3,7 @@ import { Answer, clock } from "./answer.js";
 import { OrbitCamera, handleInput, middleOf } from "./camera.js";
 import { Connection } from "./connection.js";
 import { Controls } from "./controls.js";
-import { byId, pixelRatio, setOptions } from "./elements.js";
+import { byId, pixelRatio, setOptions, setText } from "./elements.js";
 import { Finder } from "./finder.js";
 import { MotionPanel } from "./motion_panel.js";
 import { OwnPicture } from "./own_picture.js";
@@ -199,7 +199,7 @@ function record(entry) {
 
 const tellCommand = ({ command }) => (byId("command").textContent = `${command} -o picture.png`);
 function say(text) {
-  byId("status").textContent = text;
+  setText(byId("status"), text);
 }
 function trouble(text, of = "") {
   byId("trouble-text").textContent = text;

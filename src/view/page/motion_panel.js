@@ -1,6 +1,6 @@
 // Beside the picture: what the machine does besides beads, the layer's height and time, and its moves with their lines.
 import { clock, linesOf } from "./answer.js";
-import { byId, checkbox, element, follow, swatch } from "./elements.js";
+import { byId, checkbox, element, follow, setText, swatch } from "./elements.js";
 import { withOrWithout } from "./state.js";
 import { KINDS } from "./move_table.js";
 
@@ -112,17 +112,17 @@ export class MotionPanel {
       box.checked = also.includes(box.value);
       box.disabled = !this.own.ready;
       if (counts && n < KINDS.length) label.hidden = !this.own.moves.totals[n];
-      label.querySelector("output").textContent = counts && box.checked && n < KINDS.length ? counts[n] : "";
+      setText(label.querySelector("output"), counts && box.checked && n < KINDS.length ? String(counts[n]) : "");
     });
     byId("also-none").hidden = this.own.ready;
     const layer = this.#layer;
     const times = this.#layers?.seconds;
-    byId("layer-info").textContent = times && layer ? `Layer ${layer}: z ${this.#layers.z[layer].toFixed(2)} mm, takes ${clock(times[layer])}, done after ${clock(times.slice(0, layer + 1).reduce((a, b) => a + b, 0))}` : "";
+    setText(byId("layer-info"), times && layer ? `Layer ${layer}: z ${this.#layers.z[layer].toFixed(2)} mm, takes ${clock(times[layer])}, done after ${clock(times.slice(0, layer + 1).reduce((a, b) => a + b, 0))}` : "");
     const count = this.#beads.length;
     byId("moves-group").hidden = !count;
     byId("moves").max = count;
     byId("moves").value = this.move;
-    byId("moves-value").textContent = `move ${this.move} of ${count} in layer ${layer}`;
+    setText(byId("moves-value"), `move ${this.move} of ${count} in layer ${layer}`);
     this.#follow();
   }
 }

@@ -63,7 +63,7 @@ BeadField::BeadField(const gcode::Toolpath& toolpath, const gcode::Bead& bead)
         }
         if (half_flat_ > 0) reach_ = kSlopedReach * 2 * (radius_ + half_side_);
     }
-    rod_ = half_flat_ == 0 && bead.arc < 0;
+    rod_ = half_flat_ == 0 && (path_.straight() || plan_length == 0);
 }
 
 double BeadField::planOffset(double x, double y) const {
