@@ -189,5 +189,28 @@ TEST_P(SettledOfSlicers, KeepWhatWasFed) {
     }
 }
 
+// A bridge, whose threads lie in other layers at both ends, and lines that begin thin: both are sloped or round, and
+// 3 % of the plastic. What the level set encloses knows nothing of the balance.
+TEST(SettledBridge, TheLevelSetHoldsWhatWasFed) {
+    STRATUM_NEEDS_CORPUS(path, "gcode/preprocess_cancellation-prusaslicer.gcode");
+    const InputFile file(path);
+    gcode::ReadOptions options;
+    deposit::usePrinter("typical", options);
+    const gcode::Toolpath toolpath = deposit::readPrint(file.bytes(), path.string(), options, false).toolpath;
+    Selection selection;
+    chooseObject("4", toolpath, selection);
+    const auto beads = selectBeads(toolpath, selection);
+    LatticeRequest request;
+    request.voxel_size = 0.025;
+    const Lattice lattice = chooseLattice(toolpath, beads, boundsOf(toolpath, beads), request);
+    Voxelizer voxelizer(toolpath, beads, lattice);
+    const double surface = enclosedVolume(*voxelizer.printAll());
+    const DepositBalance balance = voxelizer.balance();
+    std::printf("  fed %.2f mm3, held %.2f, surface %.2f\n", balance.all.fed, balance.held(), surface);
+    // Samples close wedges between lines.
+    EXPECT_NEAR(surface, balance.all.fed, 0.01 * balance.all.fed);
+    EXPECT_NEAR(balance.held(), balance.all.fed, 5e-3 * balance.all.fed);
+}
+
 }  // namespace
 }  // namespace stratum::voxelize
