@@ -7,6 +7,7 @@
 #include "run_files.h"
 
 #include "base/error.h"
+#include "base/human_text.h"
 #include "study/polygons/peer_tracers.h"
 #include "study/study.h"
 
@@ -164,8 +165,8 @@ void run(const Verb& verb, Options& o, int argc, char** argv) {
     for (const std::string& finding : report.findings)
         if (!o.common.quiet) tools::tellError(fmt::format("vdbstudy: {}\n", finding));
     const double seconds = watch.lap();
-    tools::say(o.common, fmt::format("{}: {} rows, {} findings, {:.1f} s", verb.app->get_name(), report.rows,
-                                     report.findings.size(), seconds));
+    tools::say(o.common, fmt::format("{}: {}, {}, {:.1f} s", verb.app->get_name(), counted(report.rows, "row"),
+                                     counted(report.findings.size(), "finding"), seconds));
     tools::say(o.common, fmt::format("  {}\n  {}", report.csv.string(), report.html.string()));
     tools::writeStats(o.common, {{"study", verb.app->get_name()},
                                  {"rows", report.rows},
