@@ -152,8 +152,8 @@ TEST_P(SettledPrint, SurplusFindsAPlace) {
     std::printf("  %s: fed %.2f mm3, grooves hold %.2f %%, with outlines pressed out %+.2f %%\n", GetParam().name,
                 balance.all.fed, -100 * balance.all.surplus() / balance.all.fed,
                 -100 * balance.unplaced() / balance.all.fed);
-    // 0.51 and 0.57 % of hull have no place.
-    const double most = std::string_view(GetParam().name).starts_with("hull") ? 6e-3 : 5e-3;
+    // 0.52 % of hull have no place, with a lag 0.85; 0.60 % of the tile with arcs.
+    const double most = GetParam().flow_lag > 0 ? 9e-3 : 5.5e-3;
     EXPECT_NEAR(balance.held(), balance.all.fed, most * balance.all.fed);
     EXPECT_GT(balance.pressed_out, 0.8 * balance.all.surplus());
 }
@@ -185,7 +185,7 @@ TEST_P(SettledOfSlicers, KeepWhatWasFed) {
             balanceDeposit(toolpath, stackLayers(toolpath, selectBeads(toolpath, {})), 0xffffffff);
         std::printf("  %s: fed %.2f mm3, %+.2f %%\n", typical ? "typical" : "settled", balance.all.fed,
                     -100 * balance.unplaced() / balance.all.fed);
-        EXPECT_NEAR(balance.held(), balance.all.fed, 5e-3 * balance.all.fed);
+        EXPECT_NEAR(balance.held(), balance.all.fed, 5.5e-3 * balance.all.fed);
     }
 }
 

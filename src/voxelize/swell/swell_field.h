@@ -8,7 +8,7 @@
 // are interpolated between nodes kNodeSpacing apart, by nodeShare() along each axis:
 //   1. Sums over each node's tent (its weight in that), by kColumnSamples points of a lattice rule in each
 //      square of two by two cells: what was fed, by the beads' exact volumes along their paths; what the layer holds,
-//      without what it shares with layers before it and with sloped and round beads (direct_overlap.h); what it gains
+//      without what it shares with layers before it and with its round beads (direct_overlap.h); what it gains
 //      if its outlines move out by each of TileSums::kSwells; and the area of its top, as far as no layer is welded to
 //      it from above.
 //   2. Each node's surplus is given to the nodes within kNear cells, in proportion to a tent and to what they can gain.

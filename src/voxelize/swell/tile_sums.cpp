@@ -339,10 +339,9 @@ TileSums sumTile(const gcode::Toolpath& toolpath, const LayerStack& stack, const
             });
             coverTops(stack, tops);
             for (std::size_t n = 0; n < tops.size(); ++n) {
-                OpenTop& top = tops[n];
+                const OpenTop& top = tops[n];
                 if (!own.owns(top.layer)) continue;
                 const Layer& of = stack.layers[top.layer];
-                if (direct.meets(of)) top.open &= ~direct.covered(of);
                 kSums.addTop(of, top.solid, top.open, of.crown > 0 ? &fields[n] : nullptr, first_node,
                              sumsOf(top.layer));
             }
