@@ -26,6 +26,7 @@ struct SettledFile {
     bool corpus;
     double corner_fraction;
     double flow_lag = -1;  // s; below 0: the flow isn't simulated
+    double lost = 5e-3;    // the share of what was fed that may have no place
 };
 
 class SettledPrint : public testing::TestWithParam<SettledFile> {
@@ -47,12 +48,12 @@ protected:
 
 INSTANTIATE_TEST_SUITE_P(
     Prints, SettledPrint,
-    testing::Values(SettledFile{"hull", "hull.gcode", false, 1}, SettledFile{"gear", "gear.gcode", false, 0.5},
-                    SettledFile{"bridges", "bridges.gcode", false, 1},
+    testing::Values(SettledFile{"hull", "hull.gcode", false, 1, -1, 5.5e-3},
+                    SettledFile{"gear", "gear.gcode", false, 0.5}, SettledFile{"bridges", "bridges.gcode", false, 1},
                     SettledFile{"two_tone", "two_tone.gcode", false, 0.7},
-                    SettledFile{"tile_arcs", "tile_arcs.gcode", false, 1, 0.02},
+                    SettledFile{"tile_arcs", "tile_arcs.gcode", false, 1, 0.02, 6.5e-3},
                     SettledFile{"arcs", "preprocess_cancellation-superslicer.gcode", true, 1},
-                    SettledFile{"hull_lagging", "hull.gcode", false, 1, 0.03},
+                    SettledFile{"hull_lagging", "hull.gcode", false, 1, 0.03, 9e-3},
                     SettledFile{"arcs_lagging", "preprocess_cancellation-superslicer.gcode", true, 1, 0.1},
                     SettledFile{"cura", "preprocess_cancellation-cura.gcode", true, 0.5}),
     [](const auto& print) { return std::string(print.param.name); });
@@ -152,9 +153,7 @@ TEST_P(SettledPrint, SurplusFindsAPlace) {
     std::printf("  %s: fed %.2f mm3, grooves hold %.2f %%, with outlines pressed out %+.2f %%\n", GetParam().name,
                 balance.all.fed, -100 * balance.all.surplus() / balance.all.fed,
                 -100 * balance.unplaced() / balance.all.fed);
-    // 0.52 % of hull have no place, with a lag 0.85; 0.60 % of the tile with arcs.
-    const double most = GetParam().flow_lag > 0 ? 9e-3 : 5.5e-3;
-    EXPECT_NEAR(balance.held(), balance.all.fed, most * balance.all.fed);
+    EXPECT_NEAR(balance.held(), balance.all.fed, GetParam().lost * balance.all.fed);
     EXPECT_GT(balance.pressed_out, 0.8 * balance.all.surplus());
 }
 
@@ -185,12 +184,14 @@ TEST_P(SettledOfSlicers, KeepWhatWasFed) {
             balanceDeposit(toolpath, stackLayers(toolpath, selectBeads(toolpath, {})), 0xffffffff);
         std::printf("  %s: fed %.2f mm3, %+.2f %%\n", typical ? "typical" : "settled", balance.all.fed,
                     -100 * balance.unplaced() / balance.all.fed);
-        EXPECT_NEAR(balance.held(), balance.all.fed, 5.5e-3 * balance.all.fed);
+        // 0.51 % of Slic3r's.
+        const bool slic3r = std::string_view(GetParam()).ends_with("slic3r.gcode");
+        EXPECT_NEAR(balance.held(), balance.all.fed, (typical && slic3r ? 5.5e-3 : 5e-3) * balance.all.fed);
     }
 }
 
-// A bridge, whose threads lie in other layers at both ends, and lines that begin thin: both are sloped or round, and
-// 3 % of the plastic. What the level set encloses knows nothing of the balance.
+// Lines that begin thin are round there, and lie in their layer: 3 % of this print. What the level set encloses knows
+// nothing of the balance.
 TEST(SettledBridge, TheLevelSetHoldsWhatWasFed) {
     STRATUM_NEEDS_CORPUS(path, "gcode/preprocess_cancellation-prusaslicer.gcode");
     const InputFile file(path);

@@ -361,7 +361,6 @@ TEST(SwellField, WhatALayerLacksIsNotPassedOn) {
     EXPECT_NEAR(riseOfThird(1, 0.9), alone, 1e-9);
 }
 
-// Tiles are kept where beads are, not over the rectangle: 19 m apart it would have 1e8 of them.
 // Round lines on the center plane of the upper layer are plastic where the layer's own lines were fed, too.
 TEST(SwellField, WhatRoundBeadsShareFindsAPlace) {
     gcode::Toolpath toolpath = solid(1, 2);
@@ -385,6 +384,7 @@ TEST(SwellField, AWideningLineIsNotPressedOut) {
     EXPECT_LT(balance.pressed_out, 6e-3 * fed);
 }
 
+// Tiles are kept where beads are, not over the rectangle: 19 m apart it would have 1e8 of them.
 TEST(SwellField, FarCopiesHoldWhatOneDoes) {
     gcode::Toolpath one = sparse();
     const DepositBalance single = balanceOf(one);
