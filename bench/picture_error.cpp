@@ -1,5 +1,5 @@
 // How far pictures are from a reference: the figures of docs/benchmarks.md, "Pictures".
-#include "shade/film/exr_reader.h"
+#include "shade/film/exr.h"
 #include "shade/film/film.h"
 #include "study/picture/flip.h"
 #include "study/picture/image_error.h"

@@ -12,7 +12,7 @@
 #include "print_options.h"
 #include "run_files.h"
 
-#include "assemble/print/tool_colors.h"
+#include "assemble/print/print_colors.h"
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "export/mesh_file.h"

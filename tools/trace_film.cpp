@@ -2,7 +2,6 @@
 
 #include "progress.h"
 #include "trace_frame.h"
-#include "trace_series.h"
 #include "trace_shard.h"
 
 #include "animate/encode/film_file.h"
@@ -11,7 +10,7 @@
 #include "animate/pace.h"
 #include "assemble/shape/file_facts.h"
 #include "base/error.h"
-#include "gcode/container/input_bytes.h"
+#include "gcode/container/container.h"
 #include "shade/film/picture.h"
 #include "shade/parts/shard.h"
 

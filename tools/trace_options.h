@@ -2,6 +2,7 @@
 #pragma once
 
 #include "command_line.h"
+#include "manual.h"
 #include "trace_film_options.h"
 #include "trace_print_options.h"
 
@@ -21,6 +22,12 @@
 #include <vector>
 
 namespace stratum::tools {
+
+// What vdbtrace -h shows.
+
+extern const char* const kTraceExamples;
+
+Brief traceBrief();
 
 /// --shard, and what follows from it (trace_shard.h).
 struct ShardCommand {

@@ -6,7 +6,7 @@
 #include "base/checksum.h"
 #include "base/error.h"
 #include "base/input_file.h"
-#include "gcode/container/input_bytes.h"
+#include "gcode/container/container.h"
 #include "shade/parts/frame_record.h"
 #include "shade/parts/shard.h"
 

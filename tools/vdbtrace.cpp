@@ -4,15 +4,15 @@
 #include "output_names.h"
 #include "run_files.h"
 #include "trace_film.h"
+#include "trace_frame.h"
 #include "trace_options.h"
-#include "trace_series.h"
 #include "trace_shard.h"
 
 #include "assemble/finished_picture.h"
 #include "assemble/shape/file_facts.h"
 #include "base/atomic_file.h"
 #include "base/error.h"
-#include "shade/brdf/preset_names.h"
+#include "shade/brdf/preset.h"
 #include "shade/film/picture.h"
 
 #include <fmt/format.h>

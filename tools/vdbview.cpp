@@ -7,7 +7,7 @@
 #include "assemble/shape/file_facts.h"
 #include "base/error.h"
 #include "base/input_file.h"
-#include "gcode/container/input_bytes.h"
+#include "gcode/container/container.h"
 #include "serve/server.h"
 #include "view/file_watch.h"
 #include "view/viewer.h"

@@ -4,8 +4,7 @@
 #include "base/error.h"
 #include "base/input_file.h"
 #include "base/own_file.h"
-#include "shade/film/png_reader.h"
-#include "shade/film/png_writer.h"
+#include "shade/film/png.h"
 
 #include <fmt/format.h>
 

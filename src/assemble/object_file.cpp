@@ -2,7 +2,7 @@
 
 #include "assemble/sdf_file.h"
 #include "base/error.h"
-#include "shade/brdf/preset_names.h"
+#include "shade/brdf/preset.h"
 
 #include <fmt/format.h>
 

@@ -4,7 +4,7 @@
 #include "base/error.h"
 #include "base/input_file.h"
 #include "base/json_section.h"
-#include "shade/brdf/preset_names.h"
+#include "shade/brdf/preset.h"
 #include "shade/camera/camera_pose.h"
 
 #include <fmt/format.h>

@@ -1,7 +1,7 @@
 #include "base/json_section.h"
 
 #include "base/error.h"
-#include "base/nearest_name.h"
+#include "base/names.h"
 
 #include <fmt/format.h>
 

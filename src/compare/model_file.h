@@ -1,11 +1,17 @@
 // .stl, .3mf, .obj -> TriangleMesh, by Assimp.
 #pragma once
 
-#include "compare/triangle_mesh.h"
+#include "compare/closed_model.h"
 
 #include <filesystem>
 
 namespace stratum::compare {
+
+// The unit of a model file's numbers.
+
+/// mm a unit. A .3mf states it (the attribute `unit` of its model; without one it is millimetres, as 3MF has it); .stl
+/// and .obj have none, and are taken as mm. Throws InputError for a unit that 3MF does not have.
+double unitOfModel(const std::filesystem::path& path);
 
 constexpr std::size_t kMostTriangles = 50'000'000;
 

@@ -1,7 +1,7 @@
 // Points spread evenly over a surface.
 #pragma once
 
-#include "compare/triangle_mesh.h"
+#include "compare/closed_model.h"
 
 #include <cstddef>
 #include <vector>

@@ -10,7 +10,7 @@ namespace stratum::deposit {
 namespace {
 
 // The width may grow by this share of the length: beyond 45 degrees to each side one end would hide the other.
-constexpr double kSteepest = 1.0;
+constexpr double kSteepestTaper = 1.0;
 constexpr double kMostHeights = 100;    // a wider part is a mistake, as a wider bead is; the rest is purged
 constexpr double kStringSteps = 16;     // of a string that hangs
 constexpr double kMostShortened = 0.9;  // of a part's length
@@ -135,8 +135,8 @@ private:
         shortenEnds(part, volume, endVolume(width, height), piece);
         double widening = 0;
         if (width > height && bead.arc < 0 && bead.z0 == bead.z1) {
-            const double most =
-                std::min(2 * (width - height), kSteepest * length * (piece.to - piece.from) / (part.to - part.from));
+            const double most = std::min(2 * (width - height),
+                                         kSteepestTaper * length * (piece.to - piece.from) / (part.to - part.from));
             widening = std::clamp(part.growth * scale_ / height, -most, most);
         }
         piece.width = static_cast<float>(width);

@@ -2,12 +2,11 @@
 
 #include "base/error.h"
 #include "base/json_section.h"
-#include "base/nearest_name.h"
+#include "base/names.h"
 #include "base/text.h"
 #include "deposit/limits/command_limits.h"
 #include "deposit/limits/json_limits.h"
-#include "deposit/limits/klipper_config.h"
-#include "deposit/limits/klipper_limits.h"
+#include "deposit/limits/klipper.h"
 #include "deposit/limits/printer_text.h"
 #include "gcode/machine/machine_limits.h"
 

@@ -1,7 +1,7 @@
 // FloatGrid -> .vdb with metadata about the grid and its origin; written whole or not at all.
 #pragma once
 
-#include "gcode/toolpath/deposit_model.h"
+#include "gcode/toolpath/toolpath.h"
 #include "voxelize/beads/lattice.h"
 
 #include <openvdb/openvdb.h>

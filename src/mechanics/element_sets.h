@@ -2,16 +2,32 @@
 #pragma once
 
 #include "gcode/toolpath/toolpath.h"
-#include "mechanics/bead_direction.h"
 #include "mechanics/hexahedra.h"
 #include "mechanics/solid_elements.h"
 
 #include <cstdint>
 #include <map>
 #include <string>
+#include <tuple>
 #include <vector>
 
 namespace stratum::mechanics {
+
+// The direction in which the bead of an element was laid: the first axis of an orthotropic material.
+
+/// To whole degrees, so that elements of one direction share a section: half a degree changes a modulus by less than
+/// 1e-4 of its difference to the others. Forward and backward are one direction.
+struct BeadDirection {
+    std::int16_t azimuth = 0;    ///< degrees from x to y, 0..179
+    std::int16_t elevation = 0;  ///< degrees above the plan, -90..90; 0 for level beads
+    bool operator==(const BeadDirection&) const = default;
+    bool operator<(const BeadDirection& other) const {
+        return std::tie(azimuth, elevation) < std::tie(other.azimuth, other.elevation);
+    }
+};
+
+/// At the place of the bead that is nearest to (x, y), mm: arcs turn. Beads of no length: along x.
+BeadDirection directionAt(const gcode::Toolpath& toolpath, const gcode::Bead& bead, double x, double y);
 
 /// Consecutive numbers, from 0, both included.
 struct NumberRange {

@@ -3,7 +3,7 @@
 //
 // Sources: Marlin 1.1 planner.cpp and PrusaSlicer's GCodeProcessor (the jerk rules); Klipper of August 2026,
 // toolhead.py (Move), kinematics/cartesian.py and corexy.py (check_move), kinematics/extruder.py (check_move);
-// RepRapFirmware 3.5.3, DDA.cpp (InitStandardMove). Marlin 2 counts steps: marlin_block.h.
+// RepRapFirmware 3.5.3, DDA.cpp (InitStandardMove). Marlin 2 counts steps: marlin_look_ahead.h.
 #pragma once
 
 #include "gcode/machine/motion.h"

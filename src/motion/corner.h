@@ -3,7 +3,7 @@
 // Sources: Marlin 1.1's classic jerk and 1.0's jerk of the plan vector (planner.cpp; PrusaSlicer's GCodeProcessor and
 // CuraEngine's TimeEstimateCalculator are the same rules, with the same treatment of standstill); RepRapFirmware 3.5.3,
 // DDA.cpp (InitStandardMove, MatchSpeeds). Klipper's and Marlin 2's corners belong to their queues:
-// klipper_look_ahead.h, marlin_block.h.
+// klipper_look_ahead.h, marlin_look_ahead.h.
 #pragma once
 
 #include "gcode/machine/motion.h"

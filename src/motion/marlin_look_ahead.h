@@ -3,14 +3,69 @@
 // taken to be never late, so that the queue is full until the machine has to stop.
 #pragma once
 
+#include "gcode/machine/motion.h"
 #include "motion/look_ahead.h"
-#include "motion/marlin_block.h"
+#include "motion/segment.h"
+#include "motion/trapezoid.h"
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
+#include <optional>
 #include <vector>
 
 namespace stratum::motion {
+
+// A block of Marlin 2's planner: a segment in whole steps, with the limits of its axes and of the corner before it.
+//
+// Where the steps per mm are known, ends of segments are rounded to steps, segments below 6 steps on all axes are
+// merged with the next one, rates are whole steps per second, and no block begins or ends below 120 of them. Sources:
+// Marlin 2.1.2.5, Marlin/src/module/planner.cpp (_populate_block, calculate_trapezoid_for_block), its default
+// configuration; S. K. Jeon, "Improving Grbl's cornering algorithm" (2011) for junction deviation.
+
+/// mm/s. Marlin plans no corner and no end slower than this.
+constexpr double kMarlinLeastSpeed = 0.05;
+
+struct MarlinBlock {
+    double length = 0;        ///< mm
+    double speed = 0;         ///< mm/s, within the limits
+    double acceleration = 0;  ///< mm/s^2, within the limits
+    double steps = 0;         ///< of the axis with most of them; 0: steps are not counted
+    double rate = 0;          ///< steps/s at full speed
+    double entry_most = 0;    ///< (mm/s)^2 at its begin
+    double last_exit = 0;     ///< (mm/s)^2 with which it may end while it is the last one: higher within arcs
+
+    double gain() const { return 2 * acceleration * length; }
+    /// Its profile between two speeds, squared.
+    Trapezoid between(double entry_squared, double exit_squared) const;
+
+private:
+    Trapezoid inSteps(double entry_squared, double exit_squared) const;
+};
+
+class MarlinBlocks {
+public:
+    /// The block of a segment, nullopt if it is too short and waits for the next one. `at_rest`: nothing moves before.
+    std::optional<MarlinBlock> next(const Segment& segment, const gcode::MachineLimits& limits, bool at_rest);
+
+private:
+    using Axes = std::array<double, gcode::kMotionAxes>;
+
+    bool roundToSteps(const Segment& segment, const gcode::MachineLimits& limits, Axes& way, Axes& steps);
+    void limitJunction(const Segment& segment, const gcode::MachineLimits& limits, const Axes& way, bool at_rest,
+                       MarlinBlock& block);
+    void limitJerk(const gcode::MachineLimits& limits, const Axes& velocity, bool at_rest, MarlinBlock& block);
+
+    Axes target_{};                                      // mm since the begin
+    std::array<std::int64_t, gcode::kMotionAxes> at_{};  // steps since the begin
+    Axes steps_per_mm_{};                                // in force; 0: not yet known
+    // Of the block before.
+    Axes unit_before_{};
+    Axes velocity_before_{};  // mm/s
+    double speed_before_ = 0;
+    double safe_before_ = 0;
+    double radius_before_ = 0;
+};
 
 class MarlinLookAhead : public LookAhead {
 public:

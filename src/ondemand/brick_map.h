@@ -11,6 +11,12 @@
 
 namespace stratum::ondemand {
 
+// The box of a print's active voxels, found without building them.
+
+/// Index-space box of the samples within the narrow band: openvdb::Grid::evalActiveVoxelBoundingBox() of the whole
+/// grid. Evaluates one or a few leaves for each side, at the outermost beads.
+openvdb::CoordBBox findActiveBox(const PrintLayout& layout);
+
 struct PrintMap {
     march::BrickMap bricks;
     std::vector<std::uint32_t> first_bead;  ///< by macro cell: index of the first bead near it; 2^32 - 1 if none

@@ -1,6 +1,6 @@
 #include "ondemand/print_field.h"
 
-#include "ondemand/active_box.h"
+#include "ondemand/brick_map.h"
 #include "voxelize/beads/footprint.h"
 
 #include <tbb/enumerable_thread_specific.h>

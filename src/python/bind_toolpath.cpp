@@ -11,7 +11,7 @@
 #include "base/checksum.h"
 #include "base/error.h"
 #include "base/human_text.h"
-#include "gcode/container/input_bytes.h"
+#include "gcode/container/container.h"
 #include "gcode/summary.h"
 #include "gcode/toolpath/warning_log.h"
 #include "voxelize/beads/selection.h"

@@ -2,7 +2,7 @@
 
 #include "base/checksum.h"
 #include "base/input_file.h"
-#include "gcode/container/input_bytes.h"
+#include "gcode/container/container.h"
 #include "gcode/reader.h"
 #include "voxelize/beads/bead_field.h"
 

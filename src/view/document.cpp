@@ -3,7 +3,7 @@
 #include "assemble/shape/file_facts.h"
 #include "base/error.h"
 #include "gcode/summary.h"
-#include "shade/brdf/preset_names.h"
+#include "shade/brdf/preset.h"
 #include "voxelize/beads/placement.h"
 #include "voxelize/grid/attributes.h"
 

@@ -3,7 +3,6 @@
 
 #include "assemble/print/print_levels.h"
 #include "gcode/container/container.h"
-#include "gcode/container/input_bytes.h"
 
 #include <nlohmann/json.hpp>
 

@@ -1,4 +1,4 @@
-#include "animate/monotone_cubic.h"
+#include "animate/camera_path.h"
 
 #include <gtest/gtest.h>
 

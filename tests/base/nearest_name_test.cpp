@@ -1,4 +1,4 @@
-#include "base/nearest_name.h"
+#include "base/names.h"
 
 #include <gtest/gtest.h>
 

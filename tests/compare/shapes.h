@@ -1,8 +1,8 @@
 // Models of which distances are known.
 #pragma once
 
+#include "compare/closed_model.h"
 #include "compare/rigid.h"
-#include "compare/triangle_mesh.h"
 
 #include <cmath>
 #include <cstdint>

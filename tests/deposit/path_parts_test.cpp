@@ -1,4 +1,4 @@
-#include "deposit/path_parts.h"
+#include "deposit/bead_support.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "export/blosc_chunk.h"
+#include "export/leaf_packer.h"
 
 #include <blosc.h>
 #include <gtest/gtest.h>

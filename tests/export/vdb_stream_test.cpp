@@ -7,7 +7,7 @@
 #include "scratch_folder.h"
 #include "toolpaths.h"
 #include "vdb_bytes.h"
-#include "voxelize/grid/enclosed_volume.h"
+#include "voxelize/grid/solid_check.h"
 #include "voxelize/grid/voxelizer.h"
 
 #include <gtest/gtest.h>

@@ -3,7 +3,7 @@
 //
 // How to build and run it stands in scripts/fuzz.sh.
 #include "base/error.h"
-#include "shade/brdf/preset_names.h"
+#include "shade/brdf/preset.h"
 #include "shade/palette/filament_color.h"
 #include "view/asked/message.h"
 #include "view/asked/picture_plan.h"

@@ -1,4 +1,4 @@
-#include "mechanics/bead_direction.h"
+#include "mechanics/element_sets.h"
 
 #include "toolpaths.h"
 

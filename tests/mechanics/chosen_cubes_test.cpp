@@ -1,4 +1,4 @@
-#include "mechanics/chosen_cubes.h"
+#include "mechanics/solid_elements.h"
 
 #include "mechanics/pieces.h"
 

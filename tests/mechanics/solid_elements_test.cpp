@@ -4,7 +4,7 @@
 
 #include "base/error.h"
 #include "mechanics/pieces.h"
-#include "voxelize/grid/enclosed_volume.h"
+#include "voxelize/grid/solid_check.h"
 #include "voxelize/grid/voxelizer.h"
 
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 #include "motion/clock_fit.h"
 
-#include "gcode/slicer/cura_machines.h"
+#include "gcode/slicer/cura.h"
 #include "motion/print_times.h"
 #include "motions.h"
 

@@ -1,7 +1,6 @@
 // The planned seconds beside those of two firmwares' own planners: every file of the corpus's tables.
 #include "corpus.h"
 #include "gcode/container/container.h"
-#include "gcode/container/input_bytes.h"
 #include "motion/print_times.h"
 
 #include <fmt/format.h>

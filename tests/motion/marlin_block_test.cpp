@@ -1,4 +1,4 @@
-#include "motion/marlin_block.h"
+#include "motion/marlin_look_ahead.h"
 
 #include "motions.h"
 

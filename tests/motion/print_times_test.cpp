@@ -1,7 +1,7 @@
 #include "motion/print_times.h"
 
 #include "corpus.h"
-#include "gcode/container/input_bytes.h"
+#include "gcode/container/container.h"
 #include "motions.h"
 
 #include <fmt/format.h>

@@ -1,4 +1,4 @@
-#include "serve/rate_limit.h"
+#include "serve/socket_client.h"
 
 #include <gtest/gtest.h>
 

@@ -7,7 +7,7 @@
 #include "settled_field.h"
 #include "voxelize/beads/selection.h"
 #include "voxelize/grid/deposit_balance.h"
-#include "voxelize/grid/enclosed_volume.h"
+#include "voxelize/grid/solid_check.h"
 #include "voxelize/grid/voxelizer.h"
 
 #include <gtest/gtest.h>

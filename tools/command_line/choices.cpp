@@ -1,6 +1,6 @@
 #include "choices.h"
 
-#include "base/nearest_name.h"
+#include "base/names.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -6,7 +6,7 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
-#include "base/nearest_name.h"
+#include "base/names.h"
 #include "base/own_file.h"
 
 #include <fcntl.h>

@@ -1,7 +1,7 @@
 #include "output_names.h"
 
 #include "base/error.h"
-#include "gcode/container/input_bytes.h"
+#include "gcode/container/container.h"
 
 #include <fmt/format.h>
 

@@ -2,7 +2,7 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
-#include "gcode/container/input_bytes.h"
+#include "gcode/container/container.h"
 
 #include <fmt/format.h>
 #include <sys/stat.h>

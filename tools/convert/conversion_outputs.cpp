@@ -10,8 +10,8 @@
 #include "export/vdb_file.h"
 #include "export/vdb_stream.h"
 #include "report/print_report.h"
-#include "voxelize/grid/enclosed_volume.h"
 #include "voxelize/grid/interior_distance.h"
+#include "voxelize/grid/solid_check.h"
 
 #include <algorithm>
 #include <cmath>

@@ -9,7 +9,7 @@
 #include "deposit/read_print.h"
 #include "export/plan/level_set_plan.h"
 #include "export/surface_mesh.h"
-#include "gcode/container/input_bytes.h"
+#include "gcode/container/container.h"
 #include "gcode/toolpath/toolpath.h"
 #include "motion/print_times.h"
 #include "voxelize/grid/voxelizer.h"

@@ -12,7 +12,7 @@
 #include "base/stopwatch.h"
 #include "base/text.h"
 #include "deposit/read_print.h"
-#include "gcode/container/input_bytes.h"
+#include "gcode/container/container.h"
 #include "gcode/thumbnail/thumbnail_file.h"
 #include "gcode/toolpath/warning_log.h"
 

@@ -3,7 +3,7 @@
 #include "base/big_endian.h"
 #include "base/checksum.h"
 #include "base/error.h"
-#include "shade/film/png_writer.h"
+#include "shade/film/png.h"
 
 #include <algorithm>
 #include <cerrno>

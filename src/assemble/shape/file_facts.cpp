@@ -3,9 +3,9 @@
 #include "base/checksum.h"
 #include "base/error.h"
 #include "base/input_file.h"
-#include "gcode/container/input_bytes.h"
+#include "gcode/container/container.h"
 #include "march/file/grid_axes.h"
-#include "march/file/vdb_magic.h"
+#include "march/file/vdb_walker.h"
 #include "voxelize/beads/part_outline.h"
 
 #include <fmt/format.h>

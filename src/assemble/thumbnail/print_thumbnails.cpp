@@ -7,7 +7,7 @@
 #include "gcode/toolpath/purpose.h"
 #include "shade/camera/camera.h"
 #include "shade/film/jpeg_writer.h"
-#include "shade/film/png_writer.h"
+#include "shade/film/png.h"
 #include "shade/post/denoise.h"
 
 #include <glm/common.hpp>

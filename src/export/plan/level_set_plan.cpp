@@ -1,7 +1,6 @@
 #include "export/plan/level_set_plan.h"
 
 #include "gcode/toolpath/color.h"
-#include "voxelize/beads/part_bounds.h"
 #include "voxelize/beads/part_outline.h"
 
 #include <algorithm>

@@ -10,10 +10,12 @@
 // Formats are recognized by content, never by name. Nested containers are not opened.
 #pragma once
 
+#include "base/input_file.h"
 #include "gcode/container/byte_buffer.h"
 #include "gcode/slicer/package_facts.h"
 
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <optional>
 #include <string>
@@ -54,5 +56,42 @@ using Progress = std::function<void(double)>;
 /// UsageError for a plate that doesn't exist. Bytes without a container are returned unchanged, as "ascii".
 Program openContainer(std::string_view bytes, std::string_view name, std::optional<int> plate = {},
                       const ContainerLimits& limits = {}, const Progress& progress = {});
+
+// The bytes of an input file, a pipe or standard input.
+
+/// Whether a path can be read only once: "-", standard input, or a pipe such as the shell's <(zcat FILE).
+bool isStream(const std::string& path);
+
+/// A file, or all of a stream. Movable, not copyable.
+class InputBytes {
+public:
+    /// Whether to wait for the bytes of a stream, or refuse it: where the input is read anew when it has changed.
+    enum class Streams : std::uint8_t { read, refuse };
+    /// Throws InputError if there is nothing to read, or more than `most` bytes come from a stream.
+    explicit InputBytes(const std::string& path, Streams streams = Streams::read,
+                        std::size_t most = std::size_t{4} << 30);
+
+    std::string_view bytes() const { return file_ ? file_->bytes() : buffer_.view(); }
+    /// For messages: the path, or "standard input".
+    const std::string& name() const { return name_; }
+
+private:
+    std::string name_;
+    std::optional<InputFile> file_;
+    ByteBuffer buffer_;
+};
+
+/// Reads `descriptor` to its end. Throws InputError.
+ByteBuffer readAll(int descriptor, std::string_view name, std::size_t most);
+
+// Rejects files that are not G-code, by content, never by name.
+
+/// Without the zero bytes at the end that cards and printers leave there.
+std::string_view withoutZeroTail(std::string_view bytes);
+
+/// Throws InputError, with the kind of the bytes and the remedy, if they are empty, a container (inside another one),
+/// a model, a picture, a file of another machine, or binary. Cheap: reads the beginning only. `bytes` has no zero tail,
+/// unless it has nothing else.
+void refuseOtherFormats(std::string_view bytes, std::string_view name);
 
 }  // namespace stratum::gcode

@@ -1,7 +1,6 @@
 #include "gcode/container/gzip.h"
 
 #include "base/error.h"
-#include "gcode/container/inflate.h"
 #include "gcode/container/little_endian.h"
 
 #include <fmt/format.h>

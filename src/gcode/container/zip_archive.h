@@ -1,4 +1,4 @@
-// Zip files that contain programs: their entries, by libzip. zip_container.cpp and zip_thumbnails.cpp use them.
+// Zip files that contain programs: their entries, by libzip. openZip() opens the program in them.
 #pragma once
 
 #include "gcode/container/byte_buffer.h"
@@ -51,5 +51,15 @@ const ZipPlate& chooseZipPlate(const std::vector<ZipPlate>& plates, std::string_
 /// Appends an entry to `text` and checks its size and CRC32. Throws InputError, also for more than `most` bytes.
 void unpackZipEntry(zip_t* archive, zip_uint64_t index, std::string_view name, std::size_t most, ByteBuffer& text,
                     const Progress& progress);
+
+// Zip files that contain a program: .gcode.3mf (BambuStudio, OrcaSlicer) and .ufp (Ultimaker). Unzipped by libzip.
+// Sources: BambuStudio's bbs_3mf.cpp (Metadata/plate_N.gcode), Ultimaker's libCharon (/3D/model.gcode).
+
+bool isZip(std::string_view bytes);
+
+/// Unpacks the chosen plate of a 3mf, the only one by default, or the model of an ufp, and checks its CRC32. Throws
+/// InputError for damage and for zip files with no or several programs, UsageError for a plate that doesn't exist.
+Program openZip(std::string_view bytes, std::string_view name, std::optional<int> plate, const ContainerLimits& limits,
+                const Progress& progress = {});
 
 }  // namespace stratum::gcode

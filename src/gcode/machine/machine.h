@@ -17,7 +17,6 @@
 #include "gcode/slicer/settings.h"
 #include "gcode/text/lexer.h"
 #include "gcode/toolpath/arc.h"
-#include "gcode/toolpath/curve.h"
 #include "gcode/toolpath/frame.h"
 #include "gcode/toolpath/warning_log.h"
 

@@ -1,7 +1,6 @@
 #include "gcode/machine/machine_limits.h"
 
 #include "gcode/text/setting_text.h"
-#include "gcode/text/settings_comments.h"
 
 #include <algorithm>
 #include <array>

@@ -1,7 +1,7 @@
 // The machine's limits and the durations of tool changes, from a file's settings and from what the user says of the
 // printer.
 // Sources: the trailers and headers of PrusaSlicer, SuperSlicer, OrcaSlicer and BambuStudio ("; machine_max_jerk_x =
-// 10,8": normal and silent mode). Cura's files state no limits: slicer/cura_machines.h.
+// 10,8": normal and silent mode). Cura's files state no limits: slicer/cura.h.
 #pragma once
 
 #include "gcode/machine/read_options.h"

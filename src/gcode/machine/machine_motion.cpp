@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <string>
 #include <utility>
 
 namespace stratum::gcode {
@@ -416,6 +417,76 @@ void Machine::layCopy(const Point& target, const std::optional<Arc>& arc, double
     recorder_.setTool(static_cast<std::uint8_t>(other));
     lay(from, to, arc ? std::optional(carriages_.copyOf(*arc)) : std::nullopt, length, volume);
     recorder_.setTool(static_cast<std::uint8_t>(tool_));
+}
+
+// Axes besides X, Y, Z and E: W lowers the bed, others turn the part or the nozzle.
+
+void Machine::moveExtraAxes(const Command& command) {
+    if (ExtraAxes::isMix(command)) {
+        if (std::optional<ToolMix> mix = mixer_.setAll(command, tool_)) recorder_.changeMix(std::move(*mix), line_);
+        return;
+    }
+    const double rise = extra_axes_.move(command, absolute_, unit_);
+    if (rise == 0) return;
+    Point target = frame_.position();
+    target.z -= rise;
+    if (rise > 0 || !(target.z <= kMaxCoordinate))
+        return warn("W would move the bed into the nozzle, or further than any printer has room; it is not followed");
+    warn("W lowers the bed, as on ORNL's machines: the print goes on above");
+    if (moves_ != nullptr) recordPath(target, std::nullopt, 0, recorder_.toolpath().beads.size());
+    frame_.lowerBed(-rise);
+}
+
+void Machine::checkExtraAxes() {
+    extra_axes_.freeze();
+    if (!extra_axes_.anyAway()) return;
+    const std::string turned = extra_axes_.away("ABC");
+    const std::string what = fmt::format("{} turn{} the part or the nozzle", turned, turned.size() == 1 ? "s" : "");
+    if (!turned.empty() && !planar_)
+        refuse(
+            fmt::format("{}: what lies where X, Y and Z say is not the print (--planar reads it all the same)", what));
+    if (!turned.empty()) warn(fmt::format("{}, which is not followed: what is read is not the print", what));
+    if (const std::string beside = extra_axes_.away("UV"); !beside.empty())
+        warn(fmt::format("{} not followed: beads lie where X, Y and Z say",
+                         beside + (beside.size() == 1 ? " is" : " are")));
+}
+
+// M220 and M221: factors of all speeds and of the flow.
+
+void Machine::setSpeedFactor(const Command& command) {
+    if (command.has('B')) speed_backup_ = speed_factor_;
+    if (command.has('R')) speed_factor_ = speed_backup_;
+    if (command.hasValue('S')) {
+        const double percent = command.value('S');
+        if (!(percent > 0 && percent <= kMaxFactor)) return warn("M220 with a speed that no printer has; ignored");
+        speed_factor_ = percent / 100;
+    }
+    recorder_.setSpeed(feed_ * speed_factor_);
+}
+
+void Machine::setFlow(const Command& command) {
+    if (!command.hasValue('S')) return;
+    const double percent = command.value('S');
+    if (!(percent >= 0 && percent <= kMaxFactor)) refuse(fmt::format("M221 S{} is no flow in per cent", percent));
+    if (firmware_ == Firmware::klipper) return flow_.fill(percent / 100 * all_flow_);  // one factor for all tools
+    std::size_t tool = tool_;
+    for (const char letter : {'T', 'D'})  // Marlin, RepRapFirmware
+        if (command.hasValue(letter) && command.value(letter) >= 0 && command.value(letter) < 255)
+            tool = static_cast<std::size_t>(command.value(letter));
+    flow_[tool] = percent / 100 * all_flow_;
+}
+
+void Machine::setHeatOrFan(const Command& command) {
+    if (command.code == 104 || command.code == 109) {
+        if (!command.hasValue('S') && !command.hasValue('R')) return;
+        return recorder_.heat(command.hasValue('T') ? command.value('T') : static_cast<double>(tool_),
+                              command.value(command.hasValue('S') ? 'S' : 'R'), line_);
+    }
+    // Fan 1 is that of the part on Bambu's machines; those behind it cool other things.
+    if (command.hasValue('P') && command.value('P') >= 2) return;
+    const double speed = command.code == 107 ? 0 : command.hasValue('S') ? command.value('S') : 255;
+    // RepRapFirmware takes shares, too.
+    recorder_.blow(firmware_ == Firmware::reprap && speed <= 1 ? 100 * speed : speed / 2.55, line_);
 }
 
 }  // namespace stratum::gcode

@@ -4,8 +4,8 @@
 #include "gcode/machine/limit_origins.h"
 #include "gcode/machine/motion.h"
 #include "gcode/toolpath/color.h"
-#include "gcode/toolpath/deposit_model.h"
 #include "gcode/toolpath/frame.h"
+#include "gcode/toolpath/toolpath.h"
 
 #include <cstdint>
 #include <functional>

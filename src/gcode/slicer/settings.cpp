@@ -1,12 +1,10 @@
 #include "gcode/slicer/settings.h"
 
 #include "base/error.h"
-#include "gcode/slicer/cura_machines.h"
-#include "gcode/slicer/cura_profile.h"
+#include "gcode/slicer/cura.h"
 #include "gcode/slicer/truncation.h"
 #include "gcode/text/number.h"
 #include "gcode/text/setting_text.h"
-#include "gcode/text/settings_comments.h"
 #include "gcode/toolpath/color.h"
 
 #include <fmt/format.h>

@@ -1,7 +1,7 @@
 // Settings in a file's first and last comments: slicer, filament, layer height, mode and unit of E.
 // Sources: the config blocks of PrusaSlicer, SuperSlicer, Slic3r, OrcaSlicer, BambuStudio ("; key = value"), the
 // headers of Cura, Creality Print, ideaMaker, Simplify3D, Kiri:Moto, KISSlicer and Griffin files, Cura's profiles
-// (cura_profile.h), Skeinforge's "(<layerHeight> 0.3 )". Which color a preview shows: GCodeProcessor.cpp of PrusaSlicer
+// (cura.h), Skeinforge's "(<layerHeight> 0.3 )". Which color a preview shows: GCodeProcessor.cpp of PrusaSlicer
 // (extruder_colour, filament_colour where that is empty), Plater.cpp of OrcaSlicer and BambuStudio (filament_colour).
 #pragma once
 

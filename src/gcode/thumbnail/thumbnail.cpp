@@ -1,7 +1,8 @@
 #include "gcode/thumbnail/thumbnail.h"
 
+#include "base/big_endian.h"
 #include "base/error.h"
-#include "base/nearest_name.h"
+#include "base/names.h"
 #include "base/text.h"
 
 #include <fmt/format.h>
@@ -9,6 +10,7 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <cstdint>
 #include <system_error>
 
 namespace stratum::gcode {
@@ -73,6 +75,16 @@ std::vector<ThumbnailSize> parseThumbnails(std::string_view text) {
     if (sizes.size() > kMostThumbnails)
         throw UsageError(fmt::format("--thumbnail: {} pictures; give at most {}", sizes.size(), kMostThumbnails));
     return sizes;
+}
+
+std::optional<ThumbnailSize> pngSize(std::string_view bytes) {
+    using namespace std::string_view_literals;
+    constexpr std::string_view kStart = "\x89PNG\r\n\x1a\n\0\0\0\rIHDR"sv;
+    if (!bytes.starts_with(kStart) || bytes.size() < kStart.size() + 8) return std::nullopt;
+    const std::uint32_t width = bigEndian32(bytes, kStart.size());
+    const std::uint32_t height = bigEndian32(bytes, kStart.size() + 4);
+    if (width < 1 || height < 1 || width > kMostThumbnailSide || height > kMostThumbnailSide) return std::nullopt;
+    return ThumbnailSize{static_cast<int>(width), static_cast<int>(height), ThumbnailCoding::png};
 }
 
 }  // namespace stratum::gcode

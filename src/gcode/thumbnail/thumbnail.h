@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -31,5 +32,10 @@ struct Thumbnail {
 /// "300x300,16x16/QOI": as the setting `thumbnails` of PrusaSlicer 2.7 has them; PNG where nothing is said.
 /// Throws UsageError.
 std::vector<ThumbnailSize> parseThumbnails(std::string_view text);
+
+// The size of a PNG, from its first chunk. Source: PNG Specification (Third Edition), 11.2.1 IHDR.
+
+/// Nothing if the bytes begin no PNG, or one larger than kMostThumbnailSide.
+std::optional<ThumbnailSize> pngSize(std::string_view bytes);
 
 }  // namespace stratum::gcode

@@ -6,9 +6,8 @@
 #include "gcode/container/container.h"
 #include "gcode/container/gx.h"
 #include "gcode/container/gzip.h"
-#include "gcode/container/zip_container.h"
-#include "gcode/thumbnail/bgcode_thumbnails.h"
-#include "gcode/thumbnail/gx_thumbnails.h"
+#include "gcode/container/zip_archive.h"
+#include "gcode/thumbnail/container_thumbnails.h"
 #include "gcode/thumbnail/text_thumbnails.h"
 
 #include <zlib.h>

@@ -1,9 +1,9 @@
 // Replaces the thumbnails of G-code in any container.
 #pragma once
 
+#include "gcode/thumbnail/container_thumbnails.h"
 #include "gcode/thumbnail/patched_bytes.h"
 #include "gcode/thumbnail/thumbnail.h"
-#include "gcode/thumbnail/zip_thumbnails.h"
 
 #include <filesystem>
 #include <optional>

@@ -3,7 +3,6 @@
 #include "base/error.h"
 #include "base/memory.h"
 #include "base/parallel_for.h"
-#include "march/brick/leaf_cache.h"
 #include "march/brick/neighbor_signs.h"
 
 #include <fmt/format.h>

@@ -15,9 +15,8 @@
 
 #include "march/brick/brick_walk.h"
 #include "march/brick/cell_lanes-inl.h"
-#include "march/brick/hit_lanes-inl.h"
 #include "march/brick/lanes-inl.h"
-#include "march/brick/mask_lanes-inl.h"
+#include "march/brick/macro_cell.h"
 #include "march/brick/packet_lanes-inl.h"
 #include "march/brick/ray_queue_lanes-inl.h"
 #include "trace/intersector.h"
@@ -27,6 +26,7 @@
 #include <array>
 #include <atomic>
 #include <bit>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <span>
@@ -35,6 +35,45 @@
 HWY_BEFORE_NAMESPACE();
 namespace stratum::march {
 namespace HWY_NAMESPACE {
+
+// Mask64 of macro_cell.h in lanes.
+
+/// A position in a Mask64, of whose coordinates only the low two bits count.
+struct MaskPosition {
+    VI v[3];
+
+    /// Mask64::bit().
+    HWY_INLINE VI bit() const {
+        const VI three = whole(3);
+        return hn::Or(hn::Or(hn::ShiftLeft<4>(hn::And(v[0], three)), hn::ShiftLeft<2>(hn::And(v[1], three))),
+                      hn::And(v[2], three));
+    }
+};
+
+/// Mask64::group() around a bit.
+HWY_INLINE VI groupAround(VI bit) {
+    return shiftedLeft(whole(static_cast<std::int64_t>(Mask64::group(0, 0, 0))), hn::And(bit, whole(42)));
+}
+
+/// Those of the bits of `mask` that a ray can come to from a position, it included: kAhead. `flip`: -1 along axes along
+/// which the direction descends, else 0.
+HWY_INLINE VI aheadIn(VI mask, const MaskPosition& from, const VI flip[3]) {
+#if HWY_TARGET == HWY_AVX2
+    VI index = from.bit();
+    for (int axis = 0; axis < 3; ++axis) index = hn::Or(index, hn::And(flip[axis], whole(256 >> axis)));
+    return hn::And(mask, gather(kAhead.data(), index));
+#else
+    // The product of three tables of eight entries, each of which fits in a vector: a gather takes five times as long.
+    // The permutation reads three bits of its index: two of the position, and the direction's.
+    for (int axis = 0; axis < 3; ++axis) {
+        const VI index = hn::IfVecThenElse(whole(4), flip[axis], from.v[axis]);
+        const VI table = hn::Load(DI(), kAheadAlong[static_cast<std::size_t>(axis)].data());
+        const V bits = hn::TableLookupLanes(hn::BitCast(D(), table), hn::Indices512<double>{index.raw});
+        mask = hn::And(mask, hn::BitCast(DI(), bits));
+    }
+    return mask;
+#endif
+}
 
 // Tried on three prints: more packets hide more of the memory's latency until their state fills the cache.
 constexpr std::size_t kPackets = 8;

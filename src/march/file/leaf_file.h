@@ -6,22 +6,85 @@
 
 #include "base/input_file.h"
 #include "march/file/leaf_source.h"
-#include "march/file/tile_values.h"
 #include "march/file/vdb_walker.h"
 #include "trace/intersector.h"
 
 #include <openvdb/openvdb.h>
 
+#include <bit>
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
 namespace stratum::march {
+
+// The values of a node's tiles: nearly always the background, outside and inside.
+
+/// Of one or two different values a bit a tile is kept, or nothing; else all.
+class TileValues {
+public:
+    TileValues() = default;
+    explicit TileValues(std::span<const float> values) {
+        if (values.empty()) return;
+        one_ = other_ = values.front();
+        for (const float value : values) {
+            if (same(value, one_) || same(value, other_)) continue;
+            if (!same(one_, other_)) {
+                all_.assign(values.begin(), values.end());
+                return;
+            }
+            other_ = value;
+        }
+        if (same(one_, other_)) return;
+        others_.resize((values.size() + 63) / 64);
+        for (std::size_t n = 0; n < values.size(); ++n)
+            if (same(values[n], other_)) others_[n / 64] |= std::uint64_t{1} << (n % 64);
+    }
+
+    float operator[](std::size_t tile) const {
+        if (!all_.empty()) return all_[tile];
+        return !others_.empty() && (others_[tile / 64] >> (tile % 64) & 1) != 0 ? other_ : one_;
+    }
+    std::size_t bytes() const {
+        return sizeof(*this) + all_.capacity() * sizeof(float) + others_.capacity() * sizeof(std::uint64_t);
+    }
+
+private:
+    static bool same(float a, float b) { return std::bit_cast<std::uint32_t>(a) == std::bit_cast<std::uint32_t>(b); }
+
+    float one_ = 0, other_ = 0;
+    std::vector<std::uint64_t> others_;  // a bit for each tile that has the other value
+    std::vector<float> all_;
+};
+
+// Where the leaves of a tree are in a .vdb.
+
+/// Offsets of the leaves' values, in the file's order, and where the last one ends: one more than leaves.
+using LeafPlaces = std::vector<std::uint64_t>;
+
+/// By the sizes that the file lists (io::DelayedLoadMetadata), without touching the leaves. Nothing if it has no such
+/// list, or one that does not end where the grid ends.
+/// @param cursor  at the first leaf
+/// @param masks  of the leaves below each lower node, as VdbTreeVisitor has them
+std::optional<LeafPlaces> listedLeafPlaces(const VdbCursor& cursor, const VdbGrid& grid, const VdbValueFormat& format,
+                                           const std::vector<std::string_view>& masks);
+
+/// By walking through all leaves. Throws InputError unless they are whole and have the masks of the upper levels; what
+/// is packed is not unpacked.
+/// @param cursor  at the first leaf, afterwards behind the last
+LeafPlaces walkLeafPlaces(VdbCursor& cursor, const VdbValueFormat& format, const std::vector<std::string_view>& masks);
+
+/// The values of the leaf at the cursor, which moves behind them. Throws InputError unless it has this mask, which
+/// OpenVDB counts its values by: masks are in the file twice.
+VdbValues walkVdbLeaf(VdbCursor& cursor, const VdbValueFormat& format, std::string_view mask);
 
 class LeafFile final : public LeafSource {
 public:

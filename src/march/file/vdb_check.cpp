@@ -1,6 +1,6 @@
 #include "march/file/vdb_check.h"
 
-#include "march/file/leaf_places.h"
+#include "march/file/leaf_file.h"
 #include "march/file/vdb_walker.h"
 
 #include <fmt/format.h>

@@ -21,6 +21,11 @@
 
 namespace stratum::march {
 
+// How a .vdb file begins.
+
+/// OPENVDB_MAGIC of OpenVDB's version.h, as the eight bytes that io::Archive writes.
+inline constexpr std::string_view kVdbMagic(" BDV\0\0\0\0", 8);
+
 /// The bytes of a .vdb: in memory, or of a file that is read where a cursor goes. The file must outlive it.
 struct VdbBytes {
     VdbBytes(std::string_view all) : bytes(all) {}                          // NOLINT(google-explicit-constructor)
@@ -206,5 +211,16 @@ public:
 
 /// From the cursor to the first leaf: the upper levels, a thousandth of a file.
 void walkVdbTree(VdbCursor& cursor, const VdbValueFormat& format, VdbTreeVisitor& visitor);
+
+// The values of a node of a .vdb, unpacked.
+
+/// What io::readCompressedValues() makes of values that were walked through: unpacks Blosc and zip, widens halves, and
+/// puts the inactive values in their places. T is float, std::int32_t or openvdb::Vec3f. From any thread.
+/// @param cursor  for messages; throws InputError for data that can't be unpacked
+/// @param active  a bit a value
+/// @param out  room for a value a bit
+template <typename T>
+void unpackVdbValues(const VdbCursor& cursor, const VdbValues& values, const VdbValueFormat& format,
+                     std::string_view active, const T& background, T* out);
 
 }  // namespace stratum::march

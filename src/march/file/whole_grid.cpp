@@ -1,9 +1,8 @@
 #include "march/file/whole_grid.h"
 
 #include "base/parallel_for.h"
-#include "march/file/leaf_places.h"
+#include "march/file/leaf_file.h"
 #include "march/file/vdb_check.h"
-#include "march/file/vdb_values.h"
 #include "march/file/vdb_walker.h"
 
 #include <openvdb/io/GridDescriptor.h>

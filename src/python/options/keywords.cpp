@@ -1,7 +1,7 @@
 #include "python/options/keywords.h"
 
 #include "base/error.h"
-#include "base/nearest_name.h"
+#include "base/names.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

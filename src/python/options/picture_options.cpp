@@ -2,10 +2,10 @@
 
 #include "python/options/print_options.h"
 
-#include "assemble/print/tool_colors.h"
+#include "assemble/print/print_colors.h"
 #include "base/error.h"
 #include "shade/palette/color_name.h"
-#include "shade/scene/bed_texture.h"
+#include "shade/scene/bed.h"
 #include "voxelize/grid/voxel_choice.h"
 
 #include <fmt/format.h>

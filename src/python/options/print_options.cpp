@@ -1,6 +1,6 @@
 #include "python/options/print_options.h"
 
-#include "assemble/print/tool_colors.h"
+#include "assemble/print/print_colors.h"
 #include "base/error.h"
 #include "deposit/printer.h"
 #include "deposit/sag.h"

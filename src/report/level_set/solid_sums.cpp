@@ -3,7 +3,7 @@
 #include "base/parallel_for.h"
 #include "report/level_set/cell_surface.h"
 #include "report/level_set/interpolation_bias.h"
-#include "voxelize/grid/cell_volume.h"
+#include "voxelize/grid/solid_check.h"
 #include "voxelize/leaf/leaf_kernels.h"
 
 #include <algorithm>

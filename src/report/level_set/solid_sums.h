@@ -32,7 +32,7 @@ struct SolidSums {
 constexpr std::size_t kAreaSample = std::size_t{1} << 17;
 
 /// Of what is solid. A cell of eight negative samples is; a mixed one is measured along four
-/// lines along z, as in voxelize/grid/cell_volume.h, but without what interpolation adds (interpolation_bias.h). Its
+/// lines along z, as in voxelize/grid/solid_check.h, but without what interpolation adds (interpolation_bias.h). Its
 /// air belongs to the kinds of its corners that are not plastic, in equal parts. `background` of the grid, positive,
 /// and `voxel`, its edge, in the unit of the samples. Without `outside` (of a culled grid nothing can be told of
 /// pores), all surface is outer and no pore is counted. Parallel; the same sums for any number of threads.

@@ -82,10 +82,10 @@ extern const char* const kDefaultBrdf;
 ///   translucent:...      light goes through it, see makeTranslucent in translucent.h, which has the names of some
 ///   td:R,G,B,MM          the same by its transmission distance
 ///   metal:R,G,B,ALPHA    a conductor; R, G, B is what it reflects straight back
-///   matte:R,G,B          rough and diffuse, without a coat: matte.h
+///   matte:R,G,B          rough and diffuse, without a coat: finishes.h
 ///   fdm:R,G,B,ALPHA[,RATIO]  plastic whose gloss has the direction of printed lines: alpha is ALPHA on the mean, and
 ///                        RATIO times as large across the line as along it (default kLineRatio)
-///   silk:R,G,B           plastic with pearlescent platelets: silk.h
+///   silk:R,G,B           plastic with pearlescent platelets: finishes.h
 ///   glitter:R,G,B[,MM]   plastic with flakes of that size: glitter.h
 ///   FILE, or NAME        a measured table, see readBrdfFile; of a NAME, e.g. pla-blue, that of data/brdf, looked for
 ///   in

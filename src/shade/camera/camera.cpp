@@ -1,7 +1,7 @@
 #include "shade/camera/camera.h"
 
 #include "base/error.h"
-#include "base/nearest_name.h"
+#include "base/names.h"
 #include "trace/box_corners.h"
 
 #include <fmt/format.h>

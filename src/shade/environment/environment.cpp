@@ -1,12 +1,10 @@
 #include "shade/environment/environment.h"
 
 #include "base/error.h"
-#include "base/nearest_name.h"
+#include "base/names.h"
 #include "shade/angles.h"
 #include "shade/brdf/preset.h"
-#include "shade/brdf/preset_names.h"
 #include "shade/camera/sampling.h"
-#include "shade/environment/constant.h"
 #include "shade/environment/map_environment.h"
 #include "shade/environment/sky.h"
 #include "shade/environment/studio.h"
@@ -141,6 +139,26 @@ std::shared_ptr<const Environment> makeEnvironment(std::string_view text, const 
     requireValues(preset, 3, kOption, "constant:R,G,B");
     for (std::size_t i = 0; i < 3; ++i) requireRange(preset, i, 0.0f, 1e6f, kOption, "a radiance");
     return std::make_shared<ConstantEnvironment>(Color(preset.values[0], preset.values[1], preset.values[2]));
+}
+
+namespace {
+
+constexpr float kDensity = 0.25f * kInvPi;  // of the whole sphere
+
+}  // namespace
+
+void ConstantEnvironment::radianceStream(std::span<const glm::vec3>, std::span<Color> radiances) const {
+    std::fill(radiances.begin(), radiances.end(), radiance_);
+}
+
+void ConstantEnvironment::sampleStream(int, std::span<const glm::vec2> u, std::span<const glm::vec3>,
+                                       std::span<EnvironmentSample> samples) const {
+    for (std::size_t n = 0; n < u.size(); ++n) samples[n] = {toSphere(u[n]), radiance_, kDensity};
+}
+
+void ConstantEnvironment::evalStream(std::span<const glm::vec3> directions, std::span<const glm::vec3>,
+                                     std::span<EnvironmentSample> samples) const {
+    for (std::size_t n = 0; n < directions.size(); ++n) samples[n] = {directions[n], radiance_, kDensity};
 }
 
 }  // namespace stratum::shade

@@ -3,7 +3,7 @@
 #include "base/error.h"
 #include "base/input_file.h"
 #include "shade/environment/hdr_reader.h"
-#include "shade/film/exr_reader.h"
+#include "shade/film/exr.h"
 
 #include <fmt/format.h>
 

@@ -3,7 +3,7 @@
 #include "shade/camera/sampling.h"
 #include "shade/environment/map_environment.h"
 #include "shade/environment/studio.h"
-#include "shade/light/directional.h"
+#include "shade/light/light.h"
 
 #include <glm/geometric.hpp>
 

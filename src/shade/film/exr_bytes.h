@@ -1,7 +1,11 @@
-// An OpenEXR file in memory, for OpenEXR's readers: the bytes that were checked are those that are read.
+// What needs OpenEXR's own types: a file in memory for its readers, so that the bytes that were checked are those that
+// are read, and the channels of a film.
 #pragma once
 
+#include "shade/film/film.h"
+
 #include <Iex.h>
+#include <ImfFrameBuffer.h>
 #include <ImfIO.h>
 
 #include <cstdint>
@@ -33,5 +37,9 @@ private:
     const std::string_view bytes_;
     std::size_t at_ = 0;
 };
+
+/// R, G, B, A and LAYER.CHANNEL of all layers, at the places of the film's region. A file whose data window lies in
+/// the region is read into its place. OpenEXR's buffers are never const; for writing the film isn't changed.
+Imf::FrameBuffer exrBufferOf(const Film& film);
 
 }  // namespace stratum::shade

@@ -2,9 +2,9 @@
 
 #include "base/error.h"
 #include "base/text.h"
-#include "shade/film/exr_writer.h"
+#include "shade/film/exr.h"
 #include "shade/film/jpeg_writer.h"
-#include "shade/film/png_writer.h"
+#include "shade/film/png.h"
 #include "shade/film/webp_writer.h"
 
 #include <fmt/format.h>

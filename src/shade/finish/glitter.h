@@ -43,10 +43,10 @@ private:
     float alpha_;
 };
 
-/// f = s f_flakes + (1 - s) f_plastic, a mean by area as in silk.h. Space is divided into cubes of the flakes' size. A
-/// hash of the cube's place chooses one of kKinds: one in kEvery has a pair of flakes, the others are plastic alone; so
-/// a flash stays where it is while the camera moves. How far pairs lean is spread by GGX's slope distribution. The
-/// numbers are by eye.
+/// f = s f_flakes + (1 - s) f_plastic, a mean by area as in finishes.h. Space is divided into cubes of the flakes'
+/// size. A hash of the cube's place chooses one of kKinds: one in kEvery has a pair of flakes, the others are plastic
+/// alone; so a flash stays where it is while the camera moves. How far pairs lean is spread by GGX's slope
+/// distribution. The numbers are by eye.
 ///
 /// Without a place it is the mean of all kinds. Flakes smaller than a pixel are averaged by its samples, not
 /// beforehand: they want more samples than plastic.

@@ -1,7 +1,7 @@
 #include "shade/integrator/aov.h"
 
 #include "base/error.h"
-#include "base/nearest_name.h"
+#include "base/names.h"
 #include "base/text.h"
 #include "shade/frame.h"
 

@@ -14,7 +14,7 @@
 namespace stratum::shade {
 namespace {
 
-constexpr std::size_t kStream = 1024;   // paths at a time: enough to fill vectors
+constexpr std::size_t kPaths = 1024;    // paths at a time: enough to fill vectors
 constexpr std::size_t kBatch = 16;      // streams between two calls of `check`; their vertices are kept
 constexpr std::size_t kMostRounds = 8;  // of camera rays for one stream, most of which may miss the print
 constexpr std::uint32_t kSeed = 0xdee9u;
@@ -30,7 +30,7 @@ public:
         rays_.clear();
         samplers_.clear();
         points_.clear();
-        for (std::size_t round = 0; round < kMostRounds && rays_.size() < kStream; ++round)
+        for (std::size_t round = 0; round < kMostRounds && rays_.size() < kPaths; ++round)
             look(number * kMostRounds + round, tracer);
         integrator.followDeep(rays_, points_, samplers_, tracer, vertices);
         return rays_.size();
@@ -38,15 +38,15 @@ public:
 
 private:
     void look(std::size_t round, trace::Tracer& tracer) {
-        std::vector<trace::Ray> rays(kStream);
-        std::vector<Sampler> samplers(kStream, Sampler(kSeed, 65536));
-        std::vector<SurfacePoint> points(kStream);
-        for (std::size_t n = 0; n < kStream; ++n) {
-            samplers[n].start(0, 0, static_cast<std::uint32_t>(round * kStream + n));
+        std::vector<trace::Ray> rays(kPaths);
+        std::vector<Sampler> samplers(kPaths, Sampler(kSeed, 65536));
+        std::vector<SurfacePoint> points(kPaths);
+        for (std::size_t n = 0; n < kPaths; ++n) {
+            samplers[n].start(0, 0, static_cast<std::uint32_t>(round * kPaths + n));
             rays[n] = anyPrimaryRay(scene_.camera, samplers[n]);
         }
         surfaces_.nearest(rays, tracer, points);
-        for (std::size_t n = 0; n < kStream && rays_.size() < kStream; ++n) {
+        for (std::size_t n = 0; n < kPaths && rays_.size() < kPaths; ++n) {
             if (!std::isfinite(points[n].t) || points[n].brdf->translucent() == nullptr) continue;
             rays_.push_back(rays[n]);
             samplers_.push_back(samplers[n]);
@@ -76,7 +76,7 @@ std::size_t streamsFor(const RenderOptions& options) {
     const double spp = options.noise > 0.0 || options.seconds > 0.0 ? kUsualSpp : options.spp;
     const double samples = spp * options.width * options.height;
     const double paths = std::max(std::min(samples / 16.0, kEnough), std::min(samples / 32.0, kMost));
-    return std::max(std::size_t{1}, static_cast<std::size_t>(paths) / kStream);
+    return std::max(std::size_t{1}, static_cast<std::size_t>(paths) / kPaths);
 }
 
 }  // namespace
@@ -87,7 +87,7 @@ std::shared_ptr<const RadianceCache> makeRadianceCache(const SceneDescription& s
     const IntegratorOptions& kind = options.integrator;
     if (kind.exact_translucency || !followsPaths(kind) || !scene.anyTranslucent()) return {};
     const std::size_t streams = streamsFor(options);
-    auto cache = std::make_shared<RadianceCache>(print.bounds(), cellsFor(static_cast<double>(streams * kStream)));
+    auto cache = std::make_shared<RadianceCache>(print.bounds(), cellsFor(static_cast<double>(streams * kPaths)));
     const PathIntegrator integrator(scene, print, bouncesOf(kind), cache.get());
     const Surfaces surfaces(scene, print);
     tbb::enumerable_thread_specific<std::unique_ptr<trace::Tracer>> tracers([&print] { return print.makeTracer(); });

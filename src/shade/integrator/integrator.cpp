@@ -1,7 +1,7 @@
 #include "shade/integrator/integrator.h"
 
 #include "base/error.h"
-#include "base/nearest_name.h"
+#include "base/names.h"
 #include "shade/integrator/ambient_occlusion.h"
 #include "shade/integrator/geometry_integrators.h"
 #include "shade/integrator/path.h"

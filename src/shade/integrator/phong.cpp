@@ -1,6 +1,6 @@
 #include "shade/integrator/phong.h"
 
-#include "shade/light/directional.h"
+#include "shade/light/light.h"
 
 #include <glm/geometric.hpp>
 

@@ -59,4 +59,75 @@ std::optional<Color> parseAmbient(std::string_view text);
 /// @param side  of a light with extent: side * side places on it are used
 Color irradianceFrom(const Light& light, const glm::dvec3& point, int side = 32);
 
+// Lights at infinity: one direction, or a disc in the sky.
+
+/// One direction, hard shadows. A white Lambert surface that faces it gets radiance irradiance / pi.
+class DirectionalLight final : public Light {
+public:
+    /// @param to_light    towards the light, unit, world space
+    /// @param irradiance  on a surface that faces the light
+    DirectionalLight(const glm::vec3& to_light, const Color& irradiance)
+        : to_light_(to_light), irradiance_(irradiance) {}
+    std::optional<LightSample> sample(const glm::dvec3& point, const glm::vec2& u) const override;
+
+private:
+    glm::vec3 to_light_;
+    Color irradiance_;
+};
+
+/// A disc of constant radiance in the sky: soft shadows, and highlights with a size.
+class SunLight final : public Light {
+public:
+    static constexpr float kRealDiameter = 0.53f;  ///< degrees
+
+    /// @param to_light    towards the middle, unit, world space
+    /// @param irradiance  on a surface that faces it
+    /// @param diameter    degrees, above 0 and at most 90
+    SunLight(const glm::vec3& to_light, const Color& irradiance, float diameter);
+    std::optional<LightSample> sample(const glm::dvec3& point, const glm::vec2& u) const override;
+    std::optional<LightHit> intersect(const trace::Ray& ray) const override;
+    bool hasExtent() const override { return true; }
+
+private:
+    glm::vec3 to_light_;
+    Color radiance_;
+    double lift_;  // 1 - cosine of the half angle; stored itself, because a float's 1 - cos would lose digits
+    float pdf_;
+};
+
+// A point light.
+
+/// The same intensity in all directions, hard shadows; irradiance falls with the squared distance.
+class PointLight final : public Light {
+public:
+    /// @param intensity  irradiance times squared distance (world units)
+    PointLight(const glm::dvec3& position, const Color& intensity) : position_(position), intensity_(intensity) {}
+    std::optional<LightSample> sample(const glm::dvec3& point, const glm::vec2& u) const override;
+
+private:
+    glm::dvec3 position_;
+    Color intensity_;
+};
+
+// A rectangular area light: a softbox, a window, a screen.
+
+/// A rectangle of constant radiance that emits to both sides. Sampled by solid angle:
+/// C. Urena, M. Fajardo, A. King, "An Area-Preserving Parametrization for Spherical Rectangles", EGSR 2013.
+class RectangleLight final : public Light {
+public:
+    /// @param half_u, half_v  perpendicular. World units
+    RectangleLight(const glm::dvec3& center, const glm::dvec3& half_u, const glm::dvec3& half_v, const Color& radiance);
+    std::optional<LightSample> sample(const glm::dvec3& point, const glm::vec2& u) const override;
+    std::optional<LightHit> intersect(const trace::Ray& ray) const override;
+    bool hasExtent() const override { return true; }
+
+private:
+    struct View;
+    View viewFrom(const glm::dvec3& point) const;
+
+    glm::dvec3 center_, x_, y_, z_;  // unit axes; z is across
+    double half_x_, half_y_;         // world units
+    Color radiance_;
+};
+
 }  // namespace stratum::shade

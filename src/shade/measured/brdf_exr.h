@@ -2,7 +2,7 @@
 #pragma once
 
 #include "shade/brdf/brdf_scan.h"
-#include "shade/film/exr_reader.h"
+#include "shade/film/exr.h"
 
 #include <filesystem>
 #include <string_view>

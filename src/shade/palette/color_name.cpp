@@ -1,7 +1,7 @@
 #include "shade/palette/color_name.h"
 
 #include "base/error.h"
-#include "base/nearest_name.h"
+#include "base/names.h"
 #include "shade/palette/filament_color.h"
 
 #include <fmt/format.h>

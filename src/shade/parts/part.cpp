@@ -3,10 +3,8 @@
 #include "base/checksum.h"
 #include "base/error.h"
 #include "base/input_file.h"
+#include "shade/film/exr.h"
 #include "shade/film/exr_bytes.h"
-#include "shade/film/exr_header.h"
-#include "shade/film/exr_reader.h"
-#include "shade/film/exr_writer.h"
 
 #include <ImfChannelList.h>
 #include <ImfHeader.h>

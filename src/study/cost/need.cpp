@@ -2,7 +2,7 @@
 
 #include "deposit/printer.h"
 #include "deposit/read_print.h"
-#include "gcode/container/input_bytes.h"
+#include "gcode/container/container.h"
 #include "march/attribute/annotation.h"
 #include "march/brick/brick_intersector.h"
 #include "shade/film/picture.h"

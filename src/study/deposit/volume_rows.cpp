@@ -1,13 +1,13 @@
 // Volume: how much of what was fed the level set holds.
 #include "deposit/printer.h"
-#include "gcode/container/input_bytes.h"
+#include "gcode/container/container.h"
 #include "study/cost/own_process.h"
 #include "study/deposit/deposit_parts.h"
 #include "study/deposit/made_programs.h"
 #include "study/deposit/published.h"
 #include "study/print.h"
 #include "voxelize/beads/selection.h"
-#include "voxelize/grid/enclosed_volume.h"
+#include "voxelize/grid/solid_check.h"
 #include "voxelize/grid/voxelizer.h"
 
 #include <fmt/format.h>

@@ -8,7 +8,7 @@
 #include "study/report/power_law.h"
 #include "study/study.h"
 #include "voxelize/beads/selection.h"
-#include "voxelize/grid/enclosed_volume.h"
+#include "voxelize/grid/solid_check.h"
 #include "voxelize/grid/voxelizer.h"
 
 #include <fmt/format.h>

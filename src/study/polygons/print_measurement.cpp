@@ -8,7 +8,6 @@
 #include "study/picture/thumbnail.h"
 #include "study/print.h"
 #include "voxelize/beads/selection.h"
-#include "voxelize/grid/enclosed_volume.h"
 #include "voxelize/grid/solid_check.h"
 #include "voxelize/grid/voxelizer.h"
 

@@ -4,7 +4,7 @@
 #include "base/error.h"
 #include "base/json_section.h"
 #include "gcode/toolpath/toolpath.h"
-#include "shade/brdf/preset_names.h"
+#include "shade/brdf/preset.h"
 #include "shade/integrator/integrator.h"
 #include "shade/palette/filament_color.h"
 #include "voxelize/grid/attributes.h"

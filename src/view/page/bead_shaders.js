@@ -31,7 +31,7 @@ uvec4 row(usampler2D table, uint n) { return texelFetch(table, ivec2(n & ${(1 <<
 
 // What the programs share: a bead of the table, and where a ray meets it.
 const BEAD = `
-uniform usampler2D beads;   // a texel a bead, see bead_table.h; behind all of them what more belongs to them
+uniform usampler2D beads;   // a texel a bead, see bead_stream.h; behind all of them what more belongs to them
 uniform uint total;         // beads
 uniform usampler2D runs;    // height, straight side (floats); layer; feature, tool, object
 uniform vec3 eye;           // from the corner that the table counts from

@@ -6,7 +6,7 @@ const asFloat = (word) => new Float32Array(Uint32Array.of(word).buffer)[0];
 const LEVEL = ["solid-infill", "top-infill", "bridge", "ironing", "brim", "support-interface"];
 
 export class BeadTable {
-  /** `head` is the first message of the server: see bead_table.h; `runs` are its bytes. */
+  /** `head` is the first message of the server: see bead_stream.h; `runs` are its bytes. */
   constructor(head, runs) {
     const { beads, low, grain, kinds, features, objects, printed, generation } = head;
     Object.assign(this, { count: beads, low, grain, kinds, features, objects, printed, generation });

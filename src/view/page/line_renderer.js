@@ -4,7 +4,7 @@ import { LINES } from "./move_table.js";
 import { makeFramebuffer, makeProgram, makeTable, makeTexture, setUniforms } from "./webgl.js";
 
 const vertices = `${HEAD}
-uniform usampler2D records; // two texels each, see move_table.h; the last word has the layer instead of the line
+uniform usampler2D records; // two texels each, see move_stream.h; the last word has the layer instead of the line
 uniform vec3 eye, right, up, forward;
 uniform vec2 slope;
 uniform uint kinds;         // a bit each

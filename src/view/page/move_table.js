@@ -1,4 +1,4 @@
-// Travels, seams and the like as the server streams them: 32 bytes each, see move_table.h. Numbers, no drawing.
+// Travels, seams and the like as the server streams them: 32 bytes each, see move_stream.h. Numbers, no drawing.
 
 /** By kind: the name, and the colour of its lines or marks. */
 export const KINDS = [

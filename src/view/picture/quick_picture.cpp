@@ -6,7 +6,7 @@
 #include "shade/camera/sampler.h"
 #include "shade/film/tonemap.h"
 #include "shade/integrator/ambient_occlusion.h"
-#include "shade/integrator/tile.h"
+#include "shade/integrator/render.h"
 
 #include <tbb/enumerable_thread_specific.h>
 

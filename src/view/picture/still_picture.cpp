@@ -1,8 +1,8 @@
 #include "view/picture/still_picture.h"
 
-#include "shade/film/png_writer.h"
+#include "shade/film/png.h"
 #include "shade/film/tonemap.h"
-#include "shade/integrator/tile.h"
+#include "shade/integrator/render.h"
 #include "shade/post/denoise.h"
 
 #include <algorithm>

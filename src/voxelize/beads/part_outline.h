@@ -14,6 +14,22 @@
 
 namespace stratum::voxelize {
 
+// Bounds of the printed part without skirts, towers and start lines.
+
+/// A brim counts as part of the box up to this distance from it, mm.
+inline constexpr double kBrimReach = 10;
+
+/// Bounds of the selected beads, mm, without what is printed beside the part (gcode::Purpose); supports count, a brim
+/// only within kBrimReach. If nothing else is selected: bounds of all selected beads. Of the print turned by `tilt`
+/// degrees about x.
+/// @param purposes   gcode::purposesOf() of the toolpath
+/// @param selection  indices into `toolpath.beads`, at least one
+Bounds partBounds(const gcode::Toolpath& toolpath, std::span<const gcode::Purpose> purposes,
+                  std::span<const std::uint32_t> selection, double tilt = 0);
+
+/// The same box, which is that of the print turned by placement.tilt, after a placement, world units.
+Bounds placed(const Bounds& bounds, const Placement& placement);
+
 /// Points, mm, whose convex hull is that of the part within 0.5 % of its size: corners of polygons around its slabs,
 /// those that are farthest in one of kOutlineDirections. Some hundred points for any number of beads. Single-threaded.
 /// @param purposes   gcode::purposesOf() of the toolpath

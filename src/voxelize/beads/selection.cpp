@@ -1,7 +1,7 @@
 #include "voxelize/beads/selection.h"
 
 #include "base/error.h"
-#include "base/nearest_name.h"
+#include "base/names.h"
 #include "base/text.h"
 
 #include <fmt/format.h>

@@ -1,7 +1,7 @@
 #include "voxelize/grid/attributes.h"
 
 #include "base/error.h"
-#include "base/nearest_name.h"
+#include "base/names.h"
 #include "base/srgb.h"
 #include "base/text.h"
 #include "gcode/slicer/bead_colors.h"

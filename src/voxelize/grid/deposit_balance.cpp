@@ -2,7 +2,7 @@
 
 #include "voxelize/beads/bead_field.h"
 #include "voxelize/leaf/print_columns.h"
-#include "voxelize/swell/open_top.h"
+#include "voxelize/swell/layer_needs.h"
 
 #include <tbb/enumerable_thread_specific.h>
 

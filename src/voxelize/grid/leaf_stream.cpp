@@ -2,9 +2,7 @@
 
 #include "base/parallel_for.h"
 #include "base/progress_meter.h"
-#include "voxelize/grid/cell_volume.h"
-#include "voxelize/grid/enclosed_volume.h"
-#include "voxelize/grid/leaf_blocks.h"
+#include "voxelize/grid/solid_check.h"
 
 #include <algorithm>
 #include <array>

@@ -2,7 +2,7 @@
 // flood walks through.
 #pragma once
 
-#include "voxelize/beads/plan_index.h"
+#include "voxelize/beads/plan_bins.h"
 #include "voxelize/leaf/leaf_column.h"
 #include "voxelize/leaf/leaf_mask.h"
 

@@ -8,7 +8,7 @@
 // are interpolated between nodes kNodeSpacing apart, by nodeShare() along each axis:
 //   1. Sums over each node's tent (its weight in that), by kColumnSamples points of a lattice rule in each
 //      square of two by two cells: what was fed, by the beads' exact volumes along their paths; what the layer holds,
-//      without what it shares with layers before it and with its round beads (direct_overlap.h); what it gains
+//      without what it shares with layers before it and with its round beads (fed_volume.h); what it gains
 //      if its outlines move out by each of TileSums::kSwells; and the area of its top, as far as no layer is welded to
 //      it from above.
 //   2. Each node's surplus is given to the nodes within kNear cells, in proportion to a tent and to what they can gain.
@@ -30,7 +30,6 @@
 #include "voxelize/beads/plan_bins.h"
 #include "voxelize/beads/settling.h"
 #include "voxelize/swell/node_box.h"
-#include "voxelize/swell/once.h"
 
 #include <array>
 #include <atomic>
@@ -42,6 +41,43 @@
 #include <vector>
 
 namespace stratum::voxelize {
+
+// Work that several threads may want, and that one of them does.
+
+/// Work that is done once, by the thread that comes first.
+class Once {
+public:
+    /// Does it unless it is done. False if another thread is at it.
+    template <typename Work>
+    bool doUnlessAtWork(const Work& work) {
+        State expected = State::to_do;
+        if (state_.compare_exchange_strong(expected, State::at_work)) {
+            try {
+                work();
+            } catch (...) {
+                leave(State::to_do);
+                throw;
+            }
+            leave(State::done);
+            return true;
+        }
+        return expected == State::done;
+    }
+    bool isDone() const { return state_.load() == State::done; }
+    /// Does it, or waits until it is done.
+    template <typename Work>
+    void doOrWait(const Work& work) {
+        while (!doUnlessAtWork(work)) state_.wait(State::at_work);
+    }
+
+private:
+    enum class State : std::uint8_t { to_do, at_work, done };
+    void leave(State state) {
+        state_.store(state);
+        state_.notify_all();
+    }
+    std::atomic<State> state_ = State::to_do;
+};
 
 class LayerNeeds;
 

@@ -1,10 +1,9 @@
 #include "voxelize/swell/tile_sums.h"
 
 #include "voxelize/leaf/leaf_column.h"
-#include "voxelize/swell/direct_overlap.h"
 #include "voxelize/swell/fed_volume.h"
+#include "voxelize/swell/layer_needs.h"
 #include "voxelize/swell/node_sums.h"
-#include "voxelize/swell/open_top.h"
 
 #include <algorithm>
 #include <array>

@@ -3,7 +3,7 @@
 #include "base/error.h"
 #include "base/input_file.h"
 #include "scratch_folder.h"
-#include "shade/film/png_reader.h"
+#include "shade/film/png.h"
 
 #include <gtest/gtest.h>
 #include <zlib.h>

@@ -1,4 +1,4 @@
-#include "animate/encode/child_process.h"
+#include "animate/encode/ffmpeg_writer.h"
 
 #include "base/error.h"
 #include "scratch_folder.h"

@@ -1,4 +1,4 @@
-#include "assemble/print/tool_colors.h"
+#include "assemble/print/print_colors.h"
 
 #include "base/error.h"
 

@@ -3,7 +3,7 @@
 #include "base/input_file.h"
 #include "corpus.h"
 #include "gcode/reader.h"
-#include "gcode/thumbnail/png_size.h"
+#include "gcode/thumbnail/thumbnail.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "deposit/limits/klipper_config.h"
+#include "deposit/limits/klipper.h"
 
 #include "deposit/limits/printer_files.h"
 

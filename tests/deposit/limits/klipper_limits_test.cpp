@@ -1,4 +1,4 @@
-#include "deposit/limits/klipper_limits.h"
+#include "deposit/limits/klipper.h"
 
 #include "deposit/limits/printer_files.h"
 

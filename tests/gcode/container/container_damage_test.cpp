@@ -3,7 +3,7 @@
 #include "base/error.h"
 #include "base/input_file.h"
 #include "corpus.h"
-#include "gcode/container/bgcode_block.h"
+#include "gcode/container/bgcode.h"
 #include "gcode/container_samples.h"
 #include "gcode/program.h"
 

@@ -1,4 +1,4 @@
-#include "gcode/container/metadata.h"
+#include "gcode/container/bgcode.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "gcode/container/sniff.h"
+#include "gcode/container/container.h"
 
 #include "base/error.h"
 

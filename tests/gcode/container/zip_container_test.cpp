@@ -1,4 +1,4 @@
-#include "gcode/container/zip_container.h"
+#include "gcode/container/zip_archive.h"
 
 #include "base/error.h"
 #include "base/input_file.h"

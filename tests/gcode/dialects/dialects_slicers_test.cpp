@@ -344,7 +344,7 @@ const Dialect kHeights[] = {
      .program =
          "M83\nG1 Z.2\nG1 X9 E1\nG1 Z.4\nG1 X0 E1\nG1 Z.6\nG1 X9 E1\nG1 X50\nG1 Z.3\nG1 X59 E1\nG1 Z.6\nG1 X50 E1\n",
      .rule = "what lies below here counts, not what lies elsewhere",
-     .document = "this project, local_heights.h",
+     .document = "this project, sections.h",
      .beads = 5,
      .filament = 5,
      .height = .3,

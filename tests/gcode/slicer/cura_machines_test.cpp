@@ -1,4 +1,4 @@
-#include "gcode/slicer/cura_machines.h"
+#include "gcode/slicer/cura.h"
 
 #include "gcode/slicer/settings.h"
 

@@ -1,4 +1,4 @@
-#include "gcode/slicer/cura_profile.h"
+#include "gcode/slicer/cura.h"
 
 #include "gcode/program.h"
 #include "gcode/slicer/settings.h"

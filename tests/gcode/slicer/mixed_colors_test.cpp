@@ -1,7 +1,6 @@
-#include "gcode/slicer/mixed_colors.h"
+#include "gcode/slicer/bead_colors.h"
 
 #include "gcode/program.h"
-#include "gcode/slicer/bead_colors.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "gcode/thumbnail/png_size.h"
+#include "gcode/thumbnail/thumbnail.h"
 
 #include <gtest/gtest.h>
 

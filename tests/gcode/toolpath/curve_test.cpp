@@ -1,4 +1,4 @@
-#include "gcode/toolpath/curve.h"
+#include "gcode/toolpath/arc.h"
 
 #include <gtest/gtest.h>
 

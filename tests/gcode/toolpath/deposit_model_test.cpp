@@ -1,4 +1,4 @@
-#include "gcode/toolpath/deposit_model.h"
+#include "gcode/toolpath/toolpath.h"
 
 #include <gtest/gtest.h>
 

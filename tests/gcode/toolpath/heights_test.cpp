@@ -1,8 +1,7 @@
 // Heights and places by whole programs: spirals, supports, ironing.
-#include "gcode/toolpath/heights.h"
+#include "gcode/toolpath/sections.h"
 
 #include "gcode/program.h"
-#include "gcode/toolpath/local_heights.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

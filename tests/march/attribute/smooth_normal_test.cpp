@@ -1,4 +1,4 @@
-#include "march/attribute/smooth_normal.h"
+#include "march/attribute/annotation.h"
 
 #include "march/brick/brick_intersector.h"
 #include "random_rays.h"

@@ -1,7 +1,7 @@
 #include "report/level_set/solid_sums.h"
 
 #include "reported_print.h"
-#include "voxelize/grid/enclosed_volume.h"
+#include "voxelize/grid/solid_check.h"
 
 #include <gtest/gtest.h>
 #include <openvdb/tools/LevelSetSphere.h>

@@ -1,8 +1,7 @@
-#include "shade/film/exr_reader.h"
+#include "shade/film/exr.h"
 
 #include "base/error.h"
 #include "scratch_folder.h"
-#include "shade/film/exr_writer.h"
 #include "shade/map_files.h"
 
 #include <gtest/gtest.h>

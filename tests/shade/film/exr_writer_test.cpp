@@ -1,4 +1,4 @@
-#include "shade/film/exr_writer.h"
+#include "shade/film/exr.h"
 
 #include "base/error.h"
 #include "scratch_folder.h"

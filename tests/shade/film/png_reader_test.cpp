@@ -1,6 +1,4 @@
-#include "shade/film/png_reader.h"
-
-#include "shade/film/png_writer.h"
+#include "shade/film/png.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "shade/film/png_writer.h"
+#include "shade/film/png.h"
 
 #include "base/error.h"
 #include "scratch_folder.h"

@@ -1,4 +1,4 @@
-#include "shade/finish/metal.h"
+#include "shade/finish/finishes.h"
 
 #include "shade/brdf_checks.h"
 

@@ -3,9 +3,8 @@
 #include "base/error.h"
 #include "scratch_folder.h"
 #include "shade/analytic_prints.h"
-#include "shade/film/exr_writer.h"
+#include "shade/film/exr.h"
 #include "shade/integrator/render.h"
-#include "shade/integrator/tile.h"
 
 #include <ImfChannelList.h>
 #include <ImfHeader.h>

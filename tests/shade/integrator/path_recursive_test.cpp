@@ -1,9 +1,9 @@
 // The path integrator against the rendering equation written down as it stands: recursion, directions uniform over the
 // hemisphere, no sampling of lights, no weights, one ray at a time.
 #include "shade/analytic_prints.h"
-#include "shade/environment/constant.h"
+#include "shade/environment/environment.h"
 #include "shade/integrator/path.h"
-#include "shade/light/rectangle_light.h"
+#include "shade/light/light.h"
 #include "shade/mean_radiance.h"
 
 #include <gtest/gtest.h>

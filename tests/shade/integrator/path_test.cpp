@@ -2,10 +2,9 @@
 
 #include "shade/analytic_prints.h"
 #include "shade/brdf/plastic.h"
-#include "shade/environment/constant.h"
+#include "shade/environment/environment.h"
 #include "shade/integrator/render.h"
-#include "shade/light/directional.h"
-#include "shade/light/rectangle_light.h"
+#include "shade/light/light.h"
 #include "shade/mean_radiance.h"
 
 #include <gtest/gtest.h>

@@ -1,9 +1,8 @@
 #include "shade/integrator/phong.h"
 
 #include "shade/analytic_prints.h"
-#include "shade/environment/constant.h"
-#include "shade/light/directional.h"
-#include "shade/light/point_light.h"
+#include "shade/environment/environment.h"
+#include "shade/light/light.h"
 #include "shade/mean_radiance.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "shade/integrator/pixel_sums.h"
+#include "shade/integrator/render.h"
 
 #include "shade/analytic_prints.h"
 

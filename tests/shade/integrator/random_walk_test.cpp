@@ -1,7 +1,7 @@
 #include "shade/integrator/random_walk.h"
 
 #include "shade/analytic_prints.h"
-#include "shade/environment/constant.h"
+#include "shade/environment/environment.h"
 #include "shade/integrator/path.h"
 #include "shade/mean_radiance.h"
 

@@ -1,4 +1,4 @@
-#include "shade/integrator/tile.h"
+#include "shade/integrator/render.h"
 
 #include "shade/analytic_prints.h"
 

@@ -1,4 +1,4 @@
-#include "shade/light/directional.h"
+#include "shade/light/light.h"
 
 #include "shade/sphere_checks.h"
 

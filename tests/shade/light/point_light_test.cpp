@@ -1,4 +1,4 @@
-#include "shade/light/point_light.h"
+#include "shade/light/light.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "shade/light/rectangle_light.h"
+#include "shade/light/light.h"
 
 #include "shade/sphere_checks.h"
 

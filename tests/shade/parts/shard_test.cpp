@@ -1,7 +1,7 @@
 #include "shade/parts/shard.h"
 
 #include "base/error.h"
-#include "shade/integrator/tile.h"
+#include "shade/integrator/render.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "shade/scene/bed_texture.h"
+#include "shade/scene/bed.h"
 
 #include "base/error.h"
 

@@ -1,4 +1,4 @@
-#include "view/beads/bead_table.h"
+#include "view/beads/bead_stream.h"
 
 #include "base/error.h"
 #include "base/input_file.h"

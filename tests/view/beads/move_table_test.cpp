@@ -1,4 +1,4 @@
-#include "view/beads/move_table.h"
+#include "view/beads/move_stream.h"
 
 #include "base/error.h"
 

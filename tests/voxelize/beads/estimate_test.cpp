@@ -1,4 +1,4 @@
-#include "voxelize/beads/estimate.h"
+#include "voxelize/grid/voxel_choice.h"
 
 #include "toolpaths.h"
 #include "voxelize/grid/voxelizer.h"

@@ -1,4 +1,4 @@
-#include "voxelize/beads/part_bounds.h"
+#include "voxelize/beads/part_outline.h"
 
 #include "toolpaths.h"
 

@@ -1,7 +1,6 @@
 #include "voxelize/beads/part_outline.h"
 
 #include "toolpaths.h"
-#include "voxelize/beads/part_bounds.h"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 #include "voxelize/beads/placement.h"
 
 #include "toolpaths.h"
-#include "voxelize/beads/part_bounds.h"
+#include "voxelize/beads/part_outline.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "voxelize/beads/plan_index.h"
+#include "voxelize/beads/plan_bins.h"
 
 #include <gtest/gtest.h>
 

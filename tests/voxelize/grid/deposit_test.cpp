@@ -1,7 +1,7 @@
 // Sections with corners and settled beads, against brute force in double.
 #include "same_grids.h"
 #include "settled_field.h"
-#include "voxelize/grid/enclosed_volume.h"
+#include "voxelize/grid/solid_check.h"
 #include "voxelize/grid/voxelizer.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "voxelize/grid/enclosed_volume.h"
+#include "voxelize/grid/solid_check.h"
 
 #include "toolpaths.h"
 #include "voxelize/grid/voxelizer.h"

@@ -1,7 +1,6 @@
 #include "voxelize/grid/solid_check.h"
 
 #include "toolpaths.h"
-#include "voxelize/grid/enclosed_volume.h"
 #include "voxelize/grid/voxelizer.h"
 
 #include <gtest/gtest.h>

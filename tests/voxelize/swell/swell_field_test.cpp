@@ -4,7 +4,7 @@
 #include "toolpaths.h"
 #include "voxelize/beads/selection.h"
 #include "voxelize/grid/deposit_balance.h"
-#include "voxelize/grid/enclosed_volume.h"
+#include "voxelize/grid/solid_check.h"
 #include "voxelize/grid/voxelizer.h"
 
 #include <gtest/gtest.h>

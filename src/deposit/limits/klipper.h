@@ -1,0 +1,48 @@
+// The limits of a printer from Klipper's configuration: its sections and options as Klipper itself reads them.
+// Source: klippy/configfile.py of August 2026 and the grammar of Python's RawConfigParser that it relies on: ':' and
+// '=' between option and value, '#' begins a comment anywhere, ';' at the begin or behind a blank, indented lines go on
+// with a value, the last of equal options counts, [include GLOB] is read in place, and options of the SAVE_CONFIG block
+// hold where the rest does not state them.
+#pragma once
+
+#include "gcode/machine/read_options.h"
+
+#include <map>
+#include <string>
+#include <string_view>
+
+namespace stratum::deposit {
+
+class KlipperConfig {
+public:
+    struct Value {
+        std::string text;
+        std::string place;  ///< "printer.cfg:12"
+    };
+
+    /// Reads `text`, which is the file `path`, and what it includes, relative to its folder. Throws InputError with
+    /// file and line for what Klipper would refuse, and beyond 1000 files or 8 MB of them.
+    KlipperConfig(const std::string& path, std::string_view text);
+
+    bool has(std::string_view section) const { return sections_.find(section) != sections_.end(); }
+    /// nullptr if it is not stated. `option` is in lower case.
+    const Value* find(std::string_view section, std::string_view option) const;
+
+private:
+    using Options = std::map<std::string, Value, std::less<>>;
+    std::map<std::string, Options, std::less<>> sections_;
+    friend class KlipperReader;
+};
+
+/// Whether some line is the head of a section.
+bool looksLikeKlipperConfig(std::string_view text);
+
+// The limits.
+// Sources: klippy/toolhead.py, kinematics/*.py, kinematics/extruder.py and extras/gcode_arcs.py of August 2026:
+// options, defaults and bounds; klippy/toolhead.py of March 2024 for max_accel_to_decel.
+
+/// Limits that the file leaves out are Klipper's defaults; without a section [extruder] those of moves of E alone are
+/// assumed. [extruder1] and further ones are not read. Throws InputError with file and line.
+gcode::PrinterLimits readKlipperLimits(const std::string& path, std::string_view text);
+
+}  // namespace stratum::deposit
