@@ -5,6 +5,7 @@
 #include "march/brick/brick_grid.h"
 #include "voxelize/beads/bead_field.h"
 #include "voxelize/beads/footprint.h"
+#include "voxelize/swell/swell_field.h"
 
 #include <fmt/format.h>
 
@@ -55,7 +56,7 @@ Reach reachOf(const PrintLayout& layout, std::uint32_t rank) {
 
 class Search {
 public:
-    explicit Search(const PrintLayout& layout) : layout_(layout), maker_(layout), reaches_(layout.stack.beads.size()) {
+    explicit Search(const PrintLayout& layout) : layout_(layout), reaches_(layout.stack.beads.size()) {
         constexpr std::size_t kGrain = 4096;
         parallelFor(reaches_.size(), kGrain, [&](std::size_t first, std::size_t last) {
             for (std::size_t rank = first; rank != last; ++rank)
@@ -65,20 +66,28 @@ public:
     }
 
     // The outermost plane of samples across `axis` with an active one.
-    int find(int axis, bool high) {
+    int find(int axis, bool high) const {
+        Leaves leaves(layout_);
         const int step = high ? -1 : 1;
         const int last = high ? all_.min()[axis] : all_.max()[axis];
         for (int plane = high ? all_.max()[axis] : all_.min()[axis]; plane != last + step; plane += step)
             for (std::size_t rank = 0; rank < reaches_.size(); ++rank)
                 if (plane >= reaches_[rank].min()[axis] && plane <= reaches_[rank].max()[axis] &&
-                    beadIsActive(static_cast<std::uint32_t>(rank), axis, plane))
+                    beadIsActive(leaves, static_cast<std::uint32_t>(rank), axis, plane))
                     return plane;
         return last;
     }
 
 private:
+    // Leaves that one search looks at.
+    struct Leaves {
+        explicit Leaves(const PrintLayout& layout) : maker(layout) {}
+        LeafMaker maker;
+        std::map<openvdb::Coord, std::array<unsigned, 3>> active;
+    };
+
     // Whether the bead's surroundings have an active sample in that plane.
-    bool beadIsActive(std::uint32_t rank, int axis, int plane) {
+    bool beadIsActive(Leaves& leaves, std::uint32_t rank, int axis, int plane) const {
         const gcode::Bead& bead = layout_.toolpath->beads[layout_.stack.beads[rank]];
         const Reach& reach = reaches_[rank];
         const auto indexOf = [&](double x, double y) {
@@ -92,7 +101,7 @@ private:
         const openvdb::Coord likely[] = {indexOf(bead.x0, bead.y0), indexOf(bead.x1, bead.y1),
                                          indexOf(0.5 * (bead.x0 + bead.x1), 0.5 * (bead.y0 + bead.y1))};
         for (const openvdb::Coord& leaf : likely)
-            if (leafIsActive(leaf, axis, plane)) return true;
+            if (leafIsActive(leaves, leaf, axis, plane)) return true;
         openvdb::Coord low = reach.min();
         openvdb::Coord high = reach.max();
         low[axis] = high[axis] = plane;
@@ -100,23 +109,23 @@ private:
         for (int i = low[0]; i <= high[0]; i += voxelize::kLeafDim)
             for (int j = low[1]; j <= high[1]; j += voxelize::kLeafDim)
                 for (int k = low[2]; k <= high[2]; k += voxelize::kLeafDim)
-                    if (leafIsActive({i, j, k}, axis, plane)) return true;
+                    if (leafIsActive(leaves, {i, j, k}, axis, plane)) return true;
         return false;
     }
 
-    bool leafIsActive(const openvdb::Coord& leaf, int axis, int plane) {
-        const auto [known, first] = active_.try_emplace(leaf);
-        if (first) known->second = activeIn(leaf);
+    bool leafIsActive(Leaves& leaves, const openvdb::Coord& leaf, int axis, int plane) const {
+        const auto [known, first] = leaves.active.try_emplace(leaf);
+        if (first) known->second = activeIn(leaves.maker, leaf);
         return known->second[static_cast<std::size_t>(axis)] >> (plane & 7) & 1;
     }
 
     // Which planes of a leaf across each axis have active samples.
-    std::array<unsigned, 3> activeIn(const openvdb::Coord& leaf) {
+    std::array<unsigned, 3> activeIn(LeafMaker& maker, const openvdb::Coord& leaf) const {
         std::array<unsigned, 3> planes{};
-        if (maker_.make(leaf, std::numeric_limits<std::uint32_t>::max()) != voxelize::LeafContent::surface)
+        if (maker.make(leaf, std::numeric_limits<std::uint32_t>::max()) != voxelize::LeafContent::surface)
             return planes;
         const auto background = static_cast<float>(layout_.lattice.background() * layout_.unit);
-        const voxelize::LeafPlanes& phi = maker_.column().planes();
+        const voxelize::LeafPlanes& phi = maker.column().planes();
         for (std::size_t z = 0; z < voxelize::kLeafPlanes; ++z)
             for (std::size_t c = 0; c < voxelize::kColumnSamples; ++c) {
                 if (!(std::abs(phi.plane[z].v[c]) < background)) continue;
@@ -128,21 +137,20 @@ private:
     }
 
     const PrintLayout& layout_;
-    LeafMaker maker_;
     std::vector<Reach> reaches_;
     Reach all_;
-    std::map<openvdb::Coord, std::array<unsigned, 3>> active_;  // of leaves looked at
 };
 
 }  // namespace
 
 openvdb::CoordBBox findActiveBox(const PrintLayout& layout) {
-    Search search(layout);
+    if (layout.stack.swell != nullptr) layout.stack.swell->list(*layout.toolpath, layout.stack);
+    const Search search(layout);
     openvdb::CoordBBox box;
-    for (int axis = 0; axis < 3; ++axis) {
-        box.min()[axis] = search.find(axis, false);
-        box.max()[axis] = search.find(axis, true);
-    }
+    parallelFor(6, 1, [&](std::size_t first, std::size_t last) {
+        for (auto n = static_cast<int>(first); n < static_cast<int>(last); ++n)
+            (n % 2 == 0 ? box.min() : box.max())[n / 2] = search.find(n / 2, n % 2 != 0);
+    });
     return box;
 }
 

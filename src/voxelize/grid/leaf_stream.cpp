@@ -3,10 +3,12 @@
 #include "base/parallel_for.h"
 #include "base/progress_meter.h"
 #include "voxelize/grid/solid_check.h"
+#include "voxelize/swell/swell_field.h"
 
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <cmath>
 #include <limits>
 #include <vector>
 
@@ -34,6 +36,7 @@ public:
             if (leavesIn(block.heights, bounds_.columns[bin]) > 0) columns.push_back({bin, placeInBlock(bins_, bin)});
         if (columns.empty()) return;
         std::sort(columns.begin(), columns.end(), [](const Column& a, const Column& b) { return a.place < b.place; });
+        if (columns_.stack().swell != nullptr) makeSwell(columns);
         receiver_.open(block.origin());
         // Output of the block before is one more item.
         parallelFor(columns.size() + 1, 1, [&](std::size_t first, std::size_t last) {
@@ -73,6 +76,28 @@ private:
         std::size_t inside = 0;  // leaf positions that are all inside
         double sampled_voxels = 0;
     };
+
+    // Before all threads go up through the same few tiles.
+    void makeSwell(const std::vector<Column>& columns) const {
+        const LayerStack& stack = columns_.stack();
+        const auto node = [voxel = columns_.lattice().voxel_size](double index) {
+            return static_cast<int>(std::floor(index * voxel / kNodeSpacing));
+        };
+        NodeBox nodes;
+        std::uint32_t first = std::numeric_limits<std::uint32_t>::max();
+        std::uint32_t last = 0;
+        for (const Column& column : columns) {
+            const std::span<const std::uint32_t> ranks = bins_[column.bin];
+            const auto direct = std::lower_bound(ranks.begin(), ranks.end(), stack.first_direct);
+            if (direct == ranks.begin()) continue;
+            first = std::min(first, stack.layer[ranks.front()]);
+            last = std::max(last, stack.layer[*(direct - 1)]);
+            const double i = bins_.originI(column.bin);
+            const double j = bins_.originJ(column.bin);
+            nodes = nodes.with({node(i), node(i + kLeafDim - 1) + 2, node(j), node(j + kLeafDim - 1) + 2});
+        }
+        if (first <= last) stack.swell->makeTiles(columns_.toolpath(), stack, nodes, first, last);
+    }
 
     void make(Column& to, const LeafRange& heights) {
         LeafColumn& column = columns_.open(to.bin, end_);

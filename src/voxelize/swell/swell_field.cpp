@@ -1,5 +1,6 @@
 #include "voxelize/swell/swell_field.h"
 
+#include "base/parallel_for.h"
 #include "voxelize/swell/layer_needs.h"
 #include "voxelize/swell/node_sums.h"
 #include "voxelize/swell/tile_spread.h"
@@ -28,7 +29,7 @@ NodeValues::NodeValues(const std::vector<std::uint32_t>& layers, const std::vect
 SwellField::SwellField() = default;
 SwellField::~SwellField() = default;
 
-void SwellField::list(const gcode::Toolpath& toolpath, const LayerStack& stack) const {
+void SwellField::makeList(const gcode::Toolpath& toolpath, const LayerStack& stack) const {
     // Isolated: a thread that waits for its own loop must not take up work that waits for this list.
     tbb::this_task_arena::isolate([&] {
         bins_ = std::make_unique<PlanBins>(toolpath, stack, cellLattice(), std::numeric_limits<std::size_t>::max());
@@ -63,7 +64,7 @@ SwellField::AllNeeded SwellField::neededBy(TilePlace place) const {
 }
 
 const SwellTile* SwellField::tile(const gcode::Toolpath& toolpath, const LayerStack& stack, TilePlace place) const {
-    std::call_once(listed_, [&] { list(toolpath, stack); });
+    list(toolpath, stack);
     Tile* own = tiles_.find(place);
     if (own == nullptr) return nullptr;
     if (own->spread.isDone()) return &own->swell;
@@ -81,6 +82,22 @@ const SwellTile* SwellField::tile(const gcode::Toolpath& toolpath, const LayerSt
         letGo(needed);
     });
     return &own->swell;
+}
+
+void SwellField::makeTiles(const gcode::Toolpath& toolpath, const LayerStack& stack, const NodeBox& nodes,
+                           std::uint32_t first, std::uint32_t last) const {
+    list(toolpath, stack);
+    // The parts that threads take are far from one another, so that they seldom wait for the same sums.
+    std::vector<TilePlace> places;
+    for (std::uint32_t z = first / kTileLayers; z <= last / kTileLayers; ++z)
+        for (int y = floorDivide(nodes.y0, kTileCells); y <= floorDivide(nodes.y1 - 1, kTileCells); ++y)
+            for (int x = floorDivide(nodes.x0, kTileCells); x <= floorDivide(nodes.x1 - 1, kTileCells); ++x) {
+                const Tile* tile = tiles_.find({x, y, z});
+                if (tile != nullptr && !tile->spread.isDone()) places.push_back({x, y, z});
+            }
+    parallelFor(places.size(), 1, [&](std::size_t from, std::size_t to) {
+        for (std::size_t n = from; n < to; ++n) tile(toolpath, stack, places[n]);
+    });
 }
 
 SwellTile SwellField::spread(const LayerStack& stack, TilePlace place, const AllNeeded& needed) const {

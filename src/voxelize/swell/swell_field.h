@@ -218,9 +218,19 @@ public:
     SwellField(const SwellField&) = delete;
     SwellField& operator=(const SwellField&) = delete;
 
+    /// Lists the beads by place, if that is not done: in parallel, unless other threads wait for it already.
+    void list(const gcode::Toolpath& toolpath, const LayerStack& stack) const {
+        std::call_once(listed_, [&] { makeList(toolpath, stack); });
+    }
+
     /// The tile there; null if no bead is near. `toolpath` and `stack` are the same at each call, and the field belongs
     /// to that stack.
     const SwellTile* tile(const gcode::Toolpath& toolpath, const LayerStack& stack, TilePlace place) const;
+
+    /// Makes the tiles with any of these nodes and any of the layers [first, last]. In parallel: threads that ask for
+    /// one tile each would wait for one another.
+    void makeTiles(const gcode::Toolpath& toolpath, const LayerStack& stack, const NodeBox& nodes, std::uint32_t first,
+                   std::uint32_t last) const;
 
     /// At a point of the plan (mm). Slow: for tests and measurements.
     Swell at(const gcode::Toolpath& toolpath, const LayerStack& stack, std::uint32_t layer, double x, double y) const;
@@ -269,7 +279,7 @@ private:
     };
     using AllNeeded = std::vector<Needed>;
 
-    void list(const gcode::Toolpath& toolpath, const LayerStack& stack) const;
+    void makeList(const gcode::Toolpath& toolpath, const LayerStack& stack) const;
     AllNeeded neededBy(TilePlace place) const;
     SwellTile spread(const LayerStack& stack, TilePlace place, const AllNeeded& needed) const;
     void letGo(const AllNeeded& needed) const;
