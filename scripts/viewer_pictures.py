@@ -1,10 +1,13 @@
 #!/usr/bin/env python3
-"""The pictures of docs/viewer.md: a bead under a click, a section with a distance, and a short film of the layer slider.
+"""Pictures of vdbview's page: screenshots by real headless Chromium.
 
     /usr/bin/python3 scripts/viewer_pictures.py build/release/bin [docs/pictures]
+    /usr/bin/python3 scripts/viewer_pictures.py build/release/bin FOLDER PRINT...
 
-Real headless Chromium shows data/gcode/hull.gcode; each picture, and each frame of the film, is a screenshot of the page
-at rest. Needs chromium, chromium-driver, python3-selenium and python3-pil.
+The first makes those of docs/viewer.md, of data/gcode/hull.gcode: a bead under a click, a section with a distance, and a
+short film of the layer slider, all at rest. The second shows each print in windows 1440, 1024 and 390 pixels wide, while
+it turns and at rest, and a film of one turn, of what the page draws itself. Needs chromium, chromium-driver,
+python3-selenium and python3-pil.
 """
 
 import contextlib
@@ -44,10 +47,10 @@ def at_rest(page):
 
 
 @contextlib.contextmanager
-def shown(folder, width, height, scheme="light", **view):
-    """The page of the hull in a window of that size."""
-    server = subprocess.Popen([os.path.join(os.path.abspath(folder), "vdbview"), "hull.gcode", "--quiet"], stdout=subprocess.PIPE,
-                              text=True, cwd=os.path.join(ROOT, "data/gcode"))
+def shown(folder, width, height, scheme="light", path=os.path.join(ROOT, "data/gcode/hull.gcode"), **view):
+    """The page of a print in a window of that size."""
+    server = subprocess.Popen([os.path.join(os.path.abspath(folder), "vdbview"), os.path.basename(path), "--quiet"],
+                              stdout=subprocess.PIPE, text=True, cwd=os.path.dirname(os.path.abspath(path)))
     with tempfile.TemporaryDirectory() as profile:
         page = browser(profile, width, height, 30)
         try:
@@ -70,9 +73,50 @@ def click(page, x, y):
     until(page, "window.vdbviewFound")
 
 
+def write_film(path, frames, seconds_a_frame, last_seconds):
+    milliseconds = [round(1000 * seconds_a_frame)] * (len(frames) - 1) + [round(1000 * last_seconds)]
+    frames[0].save(path, save_all=True, append_images=frames[1:], duration=milliseconds, loop=0, quality=75, method=6)
+    print(f"{path}: {len(frames)} frames, {os.path.getsize(path) / 1000:.0f} kB")
+
+
+def screenshot(page):
+    return Image.open(io.BytesIO(page.get_screenshot_as_png())).convert("RGB")
+
+
+# Turns the view by a number of pixels with the pointer down.
+TURN = """const c = document.getElementById('picture'), b = c.getBoundingClientRect(), [by, done] = arguments;
+c.setPointerCapture = () => {};
+const at = (type, x) => c.dispatchEvent(new PointerEvent(type, { pointerId: 1, clientX: b.left + x, clientY: b.top + b.height / 2,
+    button: 0, buttons: 1, bubbles: true }));
+if (window.turned === undefined) at('pointerdown', window.turned = b.width / 2);
+at('pointermove', window.turned += by);
+requestAnimationFrame(() => requestAnimationFrame(done));"""
+
+
+def prints(folder, output, paths):
+    os.makedirs(output, exist_ok=True)
+    for path in paths:
+        name = os.path.basename(path).split(".")[0]
+        for width, height in ((1440, 900), (1024, 768), (390, 844)):
+            with shown(folder, width, height, path=path) as page:
+                page.save_screenshot(os.path.join(output, f"{name}_{width}_still.png"))
+                page.execute_async_script(TURN, 40)
+                page.save_screenshot(os.path.join(output, f"{name}_{width}_moving.png"))
+                if width != 1024:
+                    continue
+                frames = []
+                for _ in range(FRAMES):
+                    page.execute_async_script(TURN, 1.6 * width / FRAMES)
+                    frames.append(screenshot(page))
+                write_film(os.path.join(output, f"{name}_turning.webp"), frames, SECONDS_A_FRAME, SECONDS_A_FRAME)
+
+
 def main():
     folder = sys.argv[1]
     output = sys.argv[2] if len(sys.argv) > 2 else os.path.join(ROOT, "docs/pictures")
+    if len(sys.argv) > 3:
+        prints(folder, output, sys.argv[3:])
+        return
     with shown(folder, 1280, 800, "dark", layers=[0, 110], color_by="feature") as page:
         click(page, 0.5, 0.55)
         page.save_screenshot(os.path.join(output, "viewer_inspect.png"))
@@ -92,11 +136,8 @@ def main():
                                 "for (const e of ['input', 'change']) s.dispatchEvent(new Event(e));",
                                 round(most * n / FRAMES))
             at_rest(page)
-            frames.append(Image.open(io.BytesIO(page.get_screenshot_as_png())).convert("RGB"))
-    milliseconds = [round(1000 * SECONDS_A_FRAME)] * (FRAMES - 1) + [1500]
-    film = os.path.join(output, "viewer_layers.webp")
-    frames[0].save(film, save_all=True, append_images=frames[1:], duration=milliseconds, loop=0, quality=75, method=6)
-    print(f"{film}: {len(frames)} frames, {os.path.getsize(film) / 1000:.0f} kB")
+            frames.append(screenshot(page))
+    write_film(os.path.join(output, "viewer_layers.webp"), frames, SECONDS_A_FRAME, 1.5)
 
 
 main()

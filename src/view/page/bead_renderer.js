@@ -11,6 +11,7 @@ import { dot, project, sub } from "./camera.js";
 
 const SETS = 3; // of coarse beads that are kept: each takes half of what the table takes
 const RIBBONS = 13; // the unit of their table
+const MOVED = 0.1; // see hasMoved()
 const DRAW = 16384; // beads or ribbons a call: their corners are counted in 16 bits
 
 export class BeadRenderer {
@@ -63,6 +64,8 @@ export class BeadRenderer {
     this.unknown = null; // of the last picture if they are not
     this.end = table.count;
     this.look = null;
+    this.seekTime = 0; // ms, of all beads in the last picture
+    this.soughtFrom = null; // see hasMoved()
     this.backs = {}; // programs
     this.lines = new LineRenderer(gl);
     if (gl.getError()) throw new Error("not enough memory on its GPU");
@@ -77,6 +80,7 @@ export class BeadRenderer {
   show(shown, end) {
     fillTable(this.gl, this.textures.shown, shown, 1);
     this.end = end;
+    this.soughtFrom = null;
   }
 
   /** Colours by bead, as places in a palette of [r, g, b], linear; null: one for all. */
@@ -149,8 +153,9 @@ export class BeadRenderer {
     gl.activeTexture(gl.TEXTURE0 + 31);
   }
 
-  /** Starts a picture, or goes on with it: `parts` more of all beads. Returns whether all of them are in it. */
-  collect(camera, state, parts, anew) {
+  /** Starts a picture, or goes on with it: `parts` more of all beads. Returns whether all of them are in it. `seek`: with all
+   * beads that come into sight. */
+  collect(camera, state, parts, anew, seek = false) {
     const gl = this.gl;
     this.#use(this.beads, this.target, this.#view(camera, state));
     this.unknown = null;
@@ -160,6 +165,11 @@ export class BeadRenderer {
       gl.clearBufferuiv(gl.COLOR, 0, [0, 0, 0, 0]);
       gl.clearBufferfv(gl.DEPTH, 0, [0]);
       this.#drawList(this.beads, this.visible.seenBeads);
+    }
+    if (seek) {
+      const found = this.#seekAll();
+      this.#use(this.beads, this.target, this.#view(camera, state));
+      this.#drawList(this.beads, found);
     }
     for (let n = 0; n < parts && !this.visible.complete; ++n) this.#drawBeads(this.beads, false, ...this.visible.part());
     return this.visible.complete;
@@ -185,26 +195,33 @@ export class BeadRenderer {
   }
 
   /** A picture of the beads that were seen lately, by the quick shaders. `known`: with which bead and which depth is where.
-   * Without these it is drawn on the canvas itself, which has no place for them, and needs no way there. */
-  drawQuick(camera, state, known = true) {
+   * Without these it is drawn on the canvas itself, which has no place for them, and needs no way there. `seek`: with all
+   * beads that come into sight. */
+  drawQuick(camera, state, known = true, seek = false) {
     const gl = this.gl;
     const { kinds } = this.table;
     this.quick ??= makeProgram(gl, quickVertices(kinds), quickFragments(kinds));
     this.maker ??= makeProgram(gl, screenVertices, ribbonFragments(kinds));
-    const coarse = this.#coarseFor(camera, state);
-    known ||= this.lines.any;
+    const coarse = this.coarseFor(camera, state);
+    known ||= seek || this.lines.any;
     this.unknown = known ? null : [camera, state];
     if (known) this.known = [camera, state];
     // The canvas may have depths of 24 bits.
     const near = known ? NEAR : Math.max(NEAR, 0.9 * Math.min(...this.#corners().map((corner) => dot(sub(corner, camera.eye), camera.forward))));
     const values = { ...this.#stage(camera, state), ribbons: RIBBONS, least: 0.6 * coarse.stride * this.table.layerHeight, near };
-    const ribbons = coarse.ribbonsOf(this.visible.seenBeads);
-    this.#makeRibbons(ribbons, values);
-    this.#use(this.quick, known ? this.quickTarget : null, values);
-    gl.clearBufferfv(gl.COLOR, 0, [0, 0, 0, 0]);
-    if (known) gl.clearBufferuiv(gl.COLOR, 1, [0, 0, 0, 0]);
-    gl.clearBufferfv(gl.DEPTH, 0, [0]);
-    this.#drawBeads(this.quick, true, 0, ribbons.length);
+    const draw = (list, anew) => {
+      const ribbons = coarse.ribbonsOf(list);
+      this.#makeRibbons(ribbons, values);
+      this.#use(this.quick, known ? this.quickTarget : null, values);
+      if (anew) {
+        gl.clearBufferfv(gl.COLOR, 0, [0, 0, 0, 0]);
+        if (known) gl.clearBufferuiv(gl.COLOR, 1, [0, 0, 0, 0]);
+        gl.clearBufferfv(gl.DEPTH, 0, [0]);
+      }
+      this.#drawBeads(this.quick, true, 0, ribbons.length);
+    };
+    draw(this.visible.seenBeads, true);
+    if (seek) draw(this.#seekAll(), false);
     gl.bindFramebuffer(gl.FRAMEBUFFER, null);
     gl.depthFunc(gl.GEQUAL);
     if (known) gl.disable(gl.DEPTH_TEST);
@@ -233,11 +250,12 @@ export class BeadRenderer {
     gl.drawArrays(gl.TRIANGLES, 0, 3);
   }
 
-  /** How coarse beads may be, by the size of a pixel: by powers of two, and it changes seldom. */
-  #coarseFor(camera, { layers }) {
+  /** How coarse beads may be, by the size of a pixel: by powers of two, and it changes seldom. Others are sought in the last
+   * picture, so before a change of size, which that does not survive. */
+  coarseFor(camera, { layers }, height = this.size[1]) {
     const { low, grain, layerHeight } = this.table;
     const depth = dot(sub(low.map((v, axis) => v + 32768 * grain[axis]), camera.eye), camera.forward);
-    const pixel = (2 * Math.max(depth, 1) * Math.tan((camera.fov * Math.PI) / 360)) / this.size[1];
+    const pixel = (2 * Math.max(depth, 1) * Math.tan((camera.fov * Math.PI) / 360)) / height;
     const few = layers[1] ? (layers[1] - (layers[0] || 1)) / 16 : Infinity;
     const old = this.visible.coarse;
     if (old && old.few === few && pixel > 0.8 * old.tolerance && pixel < 2.5 * old.tolerance) return old;
@@ -255,6 +273,8 @@ export class BeadRenderer {
     fillTable(this.gl, this.textures.ends, coarse.ends, 1);
     this.visible.standFor(coarse);
     this.#bind();
+    if (this.known) this.#seekAll();
+    else this.soughtFrom = null;
     return coarse;
   }
 
@@ -330,12 +350,42 @@ export class BeadRenderer {
     return [x, y, across, up];
   }
 
+  /** Whether a view differs so much from the last one of which all was sought that beads may be missed: the print is seen
+   * from elsewhere (radians), from nearer or farther (share), or is at another place (share of the height). */
+  hasMoved(camera) {
+    const [width, height] = this.size;
+    const middle = this.table.low.map((v, axis) => v + 32768 * this.table.grain[axis]);
+    const way = sub(camera.eye, middle);
+    const far = Math.hypot(...way) || 1;
+    const [right, down] = project(camera, width / height, middle) ?? [Infinity, Infinity];
+    const now = [...way.map((v) => v / far), Math.log(far), (right * width) / height, down];
+    const old = this.soughtFrom;
+    if (old && now.every((v, n) => Math.abs(v - old[n]) < MOVED)) return false;
+    this.soughtFrom = now;
+    return true;
+  }
+
   /** Looks in the last picture with depths for `rows` more of the beads that may have come into sight; the next one has them. */
   lookFor(rows) {
-    if (!this.known) return;
+    if (this.known) this.#seek(...this.visible.sought(rows * ROW));
+  }
+
+  /** The beads that come into sight in the picture at work, and are not in it. Of very many only a part is sought. */
+  #seekAll() {
+    const { visible } = this;
+    this.finish();
+    const began = performance.now();
+    const before = visible.count;
+    const all = visible.coarse?.beads.length ?? visible.all;
+    for (let calls = Math.min(2, Math.ceil(all / SOUGHT)); calls > 0; --calls) this.#seek(...visible.sought(SOUGHT));
+    this.seekTime = performance.now() - began;
+    return visible.list.subarray(before, visible.count);
+  }
+
+  #seek(first, count) {
     const gl = this.gl;
     const { coarse } = this.visible;
-    const [first, count] = this.visible.sought(rows * ROW);
+    const rows = Math.ceil(count / ROW);
     this.shift = ((this.shift ?? 0) + 0.618) % 1;
     this.#bind();
     gl.useProgram(this.seek.program);
@@ -346,8 +396,9 @@ export class BeadRenderer {
     gl.drawArrays(gl.POINTS, 0, count);
     const found = new Uint32Array(rows * ROW);
     gl.readPixels(0, 0, ROW, rows, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(found.buffer));
-    const beads = Array.from(found.subarray(0, count), (is, n) => is && (coarse ? coarse.beads[first + n] : first + n));
-    this.visible.expect(beads.filter((_, n) => found[n]));
+    const beads = [];
+    for (let n = 0; n < count; ++n) if (found[n]) beads.push(coarse ? coarse.beads[first + n] : first + n);
+    this.visible.expect(beads);
   }
 
   /** Waits until the picture is there. */

@@ -380,7 +380,7 @@ bool isAhead(vec3 p, Bead b) {
 }
 bool inSight(Bead b) {
   float reach = max(b.flat0, b.flat1) + b.radius;
-  int points = clamp(int(b.len), 2, 16);
+  int points = clamp(int(b.len), 2, 5);
   for (int n = 0; n < points; ++n) {
     vec3 p = pointOf(b, (float(n) + shift) / float(points));
     vec3 level = vec3(0.0, 0.0, p.z < 0.0 ? b.radius + b.side : -b.radius - b.side);

@@ -188,7 +188,9 @@ export class OwnPicture extends EventTarget {
     cancelAnimationFrame(this.#frame);
     this.#frame = 0;
     const scale = moving ? this.#pace.scale : 1;
-    renderer.resize(...size.map((side) => Math.max(1, Math.round(side * scale))));
+    const [width, height] = size.map((side) => Math.max(1, Math.round(side * scale)));
+    if (moving && this.#pace.quick) renderer.coarseFor(camera, state, height);
+    renderer.resize(width, height);
     this.#select(state);
     this.#selectLines(state, scale);
     const { quick } = this.#pace;
@@ -215,16 +217,17 @@ export class OwnPicture extends EventTarget {
     const renderer = this.#renderer;
     const { quick } = this.#pace;
     const turn = this.#frames++ % 4;
-    if (quick) renderer.drawQuick(camera, state, turn === 0);
+    const seek = (quick || this.#pace.fast) && renderer.hasMoved(camera);
+    if (quick) renderer.drawQuick(camera, state, turn === 0, seek);
     else {
-      renderer.collect(camera, state, 0, true);
+      renderer.collect(camera, state, 0, true, seek);
       renderer.light(camera, state);
     }
     if (turn === 0) renderer.note();
-    else if (turn === 2) renderer.lookFor(quick ? 8 : 32);
+    else if (turn === 2) renderer.lookFor(quick ? 2 : 32);
     else if (!quick) return;
     if (quick) renderer.finish();
-    this.#pace.took(performance.now() - began);
+    this.#pace.took(performance.now() - began - (seek ? renderer.seekTime : 0)); // as many pixels as without
   }
   /** Pixels of the last picture. */
   get size() {

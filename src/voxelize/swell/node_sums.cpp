@@ -76,7 +76,12 @@ void AddFields(const NodeSums::Weights& weights, const std::array<PlanField, Nod
         VF d = a;
         for (std::size_t n = 0; n < NodeSums::kCellPoints; ++n) {
             const auto add = [&](VF sum, std::size_t cell) HWY_ATTR {
-                const VF values = hn::LoadDup128(f, by_point[weights.point[n][cell]]);
+                const float* const point = by_point[weights.point[n][cell]];
+#if HWY_TARGET == HWY_SCALAR
+                const VF values = hn::Load(f, point + lane % NodeSums::kFields);
+#else
+                const VF values = hn::LoadDup128(f, point);
+#endif
                 return hn::Add(sum, hn::Mul(hn::Load(f, weights.of[n][cell] + lane), values));
             };
             a = add(a, 0);
@@ -89,24 +94,27 @@ void AddFields(const NodeSums::Weights& weights, const std::array<PlanField, Nod
         hn::StoreU(c, f, sums[2] + lane);
         hn::StoreU(d, f, sums[3] + lane);
     }
-    const hn::FixedTag<float, NodeSums::kFields> of_node;
+    // All fields of a node, or, where a vector has one number, one after the other.
+    const hn::CappedTag<float, NodeSums::kFields> of_node;
     using Node = hn::Vec<decltype(of_node)>;
-    const auto corner = [&](std::size_t cell, std::size_t n)
-                            HWY_ATTR { return hn::Load(of_node, sums[cell] + n * NodeSums::kFields); };
-    const auto add = [&](std::size_t row, std::size_t column, Node sum) HWY_ATTR {
-        float* const node = nodes + row * stride + column * NodeSums::kFields;
-        hn::StoreU(hn::Add(hn::LoadU(of_node, node), sum), of_node, node);
-    };
-    // Corners of a cell: the second along x is the next, along y the one after.
-    add(0, 0, corner(0, 0));
-    add(0, 1, hn::Add(corner(0, 1), corner(1, 0)));
-    add(0, 2, corner(1, 1));
-    add(1, 0, hn::Add(corner(0, 2), corner(2, 0)));
-    add(1, 1, hn::Add(hn::Add(hn::Add(corner(0, 3), corner(1, 2)), corner(2, 1)), corner(3, 0)));
-    add(1, 2, hn::Add(corner(1, 3), corner(3, 1)));
-    add(2, 0, corner(2, 2));
-    add(2, 1, hn::Add(corner(2, 3), corner(3, 2)));
-    add(2, 2, corner(3, 3));
+    for (std::size_t field = 0; field < NodeSums::kFields; field += hn::Lanes(of_node)) {
+        const auto corner = [&](std::size_t cell, std::size_t n)
+                                HWY_ATTR { return hn::Load(of_node, sums[cell] + n * NodeSums::kFields + field); };
+        const auto add = [&](std::size_t row, std::size_t column, Node sum) HWY_ATTR {
+            float* const node = nodes + row * stride + column * NodeSums::kFields + field;
+            hn::StoreU(hn::Add(hn::LoadU(of_node, node), sum), of_node, node);
+        };
+        // Corners of a cell: the second along x is the next, along y the one after.
+        add(0, 0, corner(0, 0));
+        add(0, 1, hn::Add(corner(0, 1), corner(1, 0)));
+        add(0, 2, corner(1, 1));
+        add(1, 0, hn::Add(corner(0, 2), corner(2, 0)));
+        add(1, 1, hn::Add(hn::Add(hn::Add(corner(0, 3), corner(1, 2)), corner(2, 1)), corner(3, 0)));
+        add(1, 2, hn::Add(corner(1, 3), corner(3, 1)));
+        add(2, 0, corner(2, 2));
+        add(2, 1, hn::Add(corner(2, 3), corner(3, 2)));
+        add(2, 2, corner(3, 3));
+    }
 }
 
 void AddNodes(const float* HWY_RESTRICT nodes, std::size_t count, float* HWY_RESTRICT surplus,
