@@ -34,8 +34,18 @@ MOST_FILES = 30  # of code, in one folder
 MOST_FUNCTION_LINES = 80
 OF_OTHERS = {"bbs_3mf.cpp"}  # sources of other projects, named as ours are
 
+# Folders of one room that include from each other: a dispatcher and what it chooses from, and what is still tangled. No
+# others may.
+BOTH_WAYS = {
+    ("assemble", "assemble/print"), ("assemble", "assemble/shape"), ("assemble/print", "assemble/shape"),
+    ("export", "export/mesh"), ("gcode/container", "gcode/slicer"), ("gcode/machine", "gcode/slicer"),
+    ("shade/brdf", "shade/finish"), ("shade/brdf", "shade/measured"), ("view", "view/beads"), ("view", "view/picture"),
+    ("voxelize/beads", "voxelize/swell"), ("voxelize/leaf", "voxelize/swell"),
+}
+
 problems = []
 files = 0
+includes = set()  # of folders: from, to
 
 
 def indent(line):
@@ -80,6 +90,8 @@ for room, allowed in MAY_INCLUDE.items():
                 problems.append(f"{place}/{name}: no include guard")
             for number, line in enumerate(lines, 1):
                 match = re.match(r'#include "(\w+)/', line)
+                if match and match.group(1) == room:
+                    includes.add((place[len("src/"):], os.path.dirname(line.split('"')[1])))
                 if match and match.group(1) != room and match.group(1) not in allowed:
                     problems.append(f"{place}/{name}:{number}: {room} must not include from {match.group(1)}")
                 if room in WITHOUT_OPENVDB and re.match(r"#include <openvdb", line):
@@ -95,6 +107,9 @@ for folder in ("tools", "tools/command_line", "tools/convert"):
 for room in os.listdir(os.path.join(ROOT, "src")):
     if room not in MAY_INCLUDE:
         problems.append(f"src/{room}: is no room of this list")
+both_ways = {(a, b) for a, b in includes if a < b and (b, a) in includes}
+problems += [f"src/{a} and src/{b} include from each other" for a, b in sorted(both_ways - BOTH_WAYS)]
+problems += [f"src/{a} and src/{b} do not include from each other any more: take them out of BOTH_WAYS" for a, b in sorted(BOTH_WAYS - both_ways)]
 names = {}  # of all sources: where files of that name are
 for top in ("src", "tools", "tests", "bench", "examples"):
     for folder, _, found in os.walk(os.path.join(ROOT, top)):

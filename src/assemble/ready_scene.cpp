@@ -1,7 +1,7 @@
 #include "assemble/ready_scene.h"
 
 #include "base/error.h"
-#include "shade/film/tonemap.h"
+#include "shade/post/exposure.h"
 #include "shade/scene/paper_tone.h"
 
 #include <utility>

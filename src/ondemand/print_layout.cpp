@@ -1,7 +1,7 @@
 #include "ondemand/print_layout.h"
 
 #include "base/memory.h"
-#include "voxelize/grid/voxel_choice.h"
+#include "voxelize/beads/estimate.h"
 
 #include <algorithm>
 #include <cmath>

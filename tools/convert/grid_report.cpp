@@ -1,7 +1,7 @@
 #include "convert/grid_report.h"
 
+#include "voxelize/beads/estimate.h"
 #include "voxelize/grid/solid_check.h"
-#include "voxelize/grid/voxel_choice.h"
 
 #include <fmt/format.h>
 

@@ -3,22 +3,11 @@
 
 #include "shade/color.h"
 #include "shade/film/film.h"
-#include "shade/scene/scene.h"
-
-#include <glm/vec3.hpp>
 
 #include <cstdint>
 #include <vector>
 
 namespace stratum::shade {
-
-// Automatic exposure from the light of a scene.
-
-/// Exposure in stops for which a white surface at `point` appears about as bright as in the studio: one that faces up,
-/// or three quarters of the brightest one if that is more, so that neither the bed nor a wall in a low sun is
-/// overexposed. Depends on environment, lights and bed alone: the same for any crop, size and print. 0 if there is no
-/// light.
-double automaticExposure(const SceneDescription& scene, const glm::dvec3& point);
 
 struct ToneOptions {
     double exposure = 0.0;  ///< stops: radiance is scaled by 2^exposure, in [-30, 30]

@@ -3,7 +3,7 @@
 #include "base/error.h"
 #include "base/memory.h"
 #include "base/parallel_for.h"
-#include "voxelize/grid/voxel_choice.h"
+#include "voxelize/beads/estimate.h"
 
 #include <fmt/format.h>
 

@@ -3,9 +3,9 @@
 #include "base/error.h"
 #include "base/memory.h"
 #include "base/stopwatch.h"
+#include "voxelize/beads/estimate.h"
 #include "voxelize/beads/layer_stack.h"
 #include "voxelize/grid/exterior.h"
-#include "voxelize/grid/voxel_choice.h"
 #include "voxelize/leaf/print_columns.h"
 
 #include <fmt/format.h>

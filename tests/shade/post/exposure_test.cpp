@@ -1,4 +1,4 @@
-#include "shade/film/tonemap.h"
+#include "shade/post/exposure.h"
 
 #include "shade/analytic_prints.h"
 #include "shade/integrator/bare_light.h"

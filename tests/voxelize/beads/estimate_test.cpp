@@ -1,4 +1,4 @@
-#include "voxelize/grid/voxel_choice.h"
+#include "voxelize/beads/estimate.h"
 
 #include "toolpaths.h"
 #include "voxelize/grid/voxelizer.h"
