@@ -1,5 +1,5 @@
 // G-code -> level set -> one ray from above -> a material, through every library.
-#include <gcode/container/input_bytes.h>
+#include <gcode/container/container.h>
 #include <gcode/reader.h>
 #include <march/brick/brick_intersector.h>
 #include <shade/brdf/brdf.h>
