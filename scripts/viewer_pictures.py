@@ -6,7 +6,7 @@
 
 The first makes those of docs/viewer.md, of data/gcode/hull.gcode: a bead under a click, a section with a distance, and a
 short film of the layer slider, all at rest. The second shows each print in windows 1440, 1024 and 390 pixels wide, while
-it turns and at rest, and a film of one turn, of what the page draws itself. Needs chromium, chromium-driver,
+it turns and at rest, and a film of turning, of what the page draws itself. Needs chromium, chromium-driver,
 python3-selenium and python3-pil.
 """
 
@@ -54,6 +54,9 @@ def shown(folder, width, height, scheme="light", path=os.path.join(ROOT, "data/g
     with tempfile.TemporaryDirectory() as profile:
         page = browser(profile, width, height, 30)
         try:
+            # A window of Chromium is no narrower than 500.
+            page.execute_cdp_cmd("Emulation.setDeviceMetricsOverride",
+                                 {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": False})
             page.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": [{"name": "prefers-color-scheme", "value": scheme}]})
             page.get(server.stdout.readline().strip() + "#" + quote(json.dumps(view)))
             at_rest(page)
