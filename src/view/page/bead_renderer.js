@@ -357,7 +357,8 @@ export class BeadRenderer {
     const middle = this.table.low.map((v, axis) => v + 32768 * this.table.grain[axis]);
     const way = sub(camera.eye, middle);
     const far = Math.hypot(...way) || 1;
-    const [right, down] = project(camera, width / height, middle) ?? [Infinity, Infinity];
+    // Behind the camera it has no place in the picture: its direction counts.
+    const [right, down] = project(camera, width / height, middle) ?? [dot(way, camera.right) / far, dot(way, camera.up) / far];
     const now = [...way.map((v) => v / far), Math.log(far), (right * width) / height, down];
     const old = this.soughtFrom;
     if (old && now.every((v, n) => Math.abs(v - old[n]) < MOVED)) return false;

@@ -208,7 +208,7 @@ export class OwnPicture extends EventTarget {
     for (renderer.finish(); !done && performance.now() - began < STEP; renderer.finish()) done = renderer.collect(camera, state, 1, false);
     if (done || !quick) renderer.light(camera, state);
     if (done || anew) renderer.note();
-    if (anew) this.#pace.rested(performance.now() - began);
+    this.#pace.rested(performance.now() - began, anew);
     this.#frame = done ? 0 : requestAnimationFrame(() => this.#complete(false));
     if (done) this.#tell("complete");
   }

@@ -12,13 +12,13 @@ export class Pace {
   scale = 1; // of each side
   quick = false;
   fast = false; // as at rest, in the time of a frame
-  #slow = 0; // pictures as at rest, one after the other
+  #slow = 0; // of pictures as at rest, one after the other
   #last = 0; // ms of the last quick one
 
-  /** The beginning of a picture at rest took so long, ms. */
-  rested(time) {
+  /** A part of a picture at rest took so long, ms. `begins`: it is the first, which has all that was seen before. */
+  rested(time, begins = true) {
     if (this.quick) return;
-    this.fast = time < GOAL;
+    if (begins) this.fast = time < GOAL;
     this.#slow = time > SLOW ? this.#slow + 1 : 0;
     this.quick = this.#slow >= 2; // a program may have been compiled
     if (this.quick) this.scale = START;
