@@ -1,5 +1,6 @@
 // Materials in the plane of incidence, as CSV: what bench/lobes.py draws for docs/shading.md.
 #include "shade/brdf/brdf.h"
+#include "shade/finish/named_brdf.h"
 #include "shade/measured/brdf_file.h"
 
 #include <fmt/format.h>

@@ -2,7 +2,7 @@
 #include <gcode/container/container.h>
 #include <gcode/reader.h>
 #include <march/brick/brick_intersector.h>
-#include <shade/brdf/brdf.h>
+#include <shade/finish/named_brdf.h>
 #include <voxelize/beads/lattice.h>
 #include <voxelize/beads/selection.h>
 #include <voxelize/grid/voxelizer.h>
@@ -11,7 +11,8 @@
 
 using namespace stratum;
 
-int main(int, char** argv) {
+int main(int argc, char** argv) {
+    if (argc < 2) return std::fprintf(stderr, "usage: level_set PRINT.gcode\n"), 2;
     openvdb::initialize();
     const gcode::InputBytes file(argv[1]);
     const gcode::Toolpath toolpath = gcode::readToolpath(file.bytes(), file.name(), {});

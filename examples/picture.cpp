@@ -2,9 +2,12 @@
 #include <assemble/ready_scene.h>
 #include <shade/film/picture.h>
 
+#include <cstdio>
+
 using namespace stratum;
 
-int main(int, char** argv) {
+int main(int argc, char** argv) {
+    if (argc < 3) return std::fprintf(stderr, "usage: picture PRINT.gcode PICTURE.png\n"), 2;
     assemble::PictureOptions options;
     options.render.width = 160;
     options.render.height = 120;

@@ -118,6 +118,8 @@ def draw(rooms, arrows):
 
 
 def main():
+    if len(sys.argv) > 1 and not sys.argv[1].endswith(".svg"):
+        sys.exit(__doc__)
     target = sys.argv[1] if len(sys.argv) > 1 else os.path.join(ROOT, "docs", "pictures", "rooms.svg")
     with open(target, "w", encoding="utf-8") as file:
         file.write(draw(*read_rooms()))

@@ -4,8 +4,8 @@
 
 #include "deposit/printer.h"
 #include "gcode/machine/belt.h"
-#include "gcode/machine/machine_limits.h"
 #include "gcode/option_names.h"
+#include "gcode/printer/machine_limits.h"
 #include "gcode/slicer/settings.h"
 
 #include <fmt/format.h>

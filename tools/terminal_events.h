@@ -1,7 +1,7 @@
 // What tools show of the files that it reads: steps on the terminal, warnings on stderr.
 #pragma once
 
-#include "assemble/read_events.h"
+#include "assemble/file/read_events.h"
 
 #include <string>
 

@@ -8,7 +8,7 @@
 #include "animate/kept_frames.h"
 #include "animate/moving_scene.h"
 #include "animate/pace.h"
-#include "assemble/shape/file_facts.h"
+#include "assemble/file/file_facts.h"
 #include "base/error.h"
 #include "gcode/container/container.h"
 #include "shade/film/picture.h"

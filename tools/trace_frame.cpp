@@ -189,7 +189,8 @@ Json renderFrame(const TraceCommand& o, const Frame& frame, const assemble::Trac
 
     const shade::RayCounts& rays = result.rays;
     std::string piece;
-    if (o.shard.pieces) piece = fmt::format("{} x {} of ", result.film.width(), result.film.height());
+    if (result.film.width() != o.render.width || result.film.height() != o.render.height)
+        piece = fmt::format("{} x {} of ", result.film.width(), result.film.height());
     say(o.common,
         fmt::format("  {}: {}{} x {} at {:.4g} spp, {} rays, {:.1f} Mrays/s, {:.2f} s in all", output, piece,
                     o.render.width, o.render.height, result.mean_spp, humanCount(static_cast<double>(rays.total())),

@@ -1,17 +1,18 @@
 #include "trace_options.h"
+#include "shade/finish/named_brdf.h"
 
 #include "choices.h"
 #include "color_options.h"
 #include "number_list.h"
 
+#include "assemble/file/file_facts.h"
+#include "assemble/file/input_files.h"
+#include "assemble/file/scene_file.h"
 #include "assemble/print/print_colors.h"
-#include "assemble/scene_file.h"
-#include "assemble/shape/file_facts.h"
 #include "base/checksum.h"
 #include "base/error.h"
 #include "base/input_file.h"
 #include "gcode/container/container.h"
-#include "shade/brdf/preset.h"
 #include "shade/palette/color_name.h"
 #include "voxelize/grid/attributes.h"
 
@@ -41,7 +42,7 @@ Brief traceBrief() {
             {"--size", ""},
             {"--spp", "Samples a pixel (default 8, denoised)"},
             {"--noise", "Samples until the error is this, e.g. 0.05"},
-            {"--denoise", "The default for all but .exr"},
+            {"--denoise", "The default of light, but for .exr"},
             {"--view", "iso, front, back, left, right, top, bottom"},
             {"--eye", "Where the camera stands"},
             {"--look-at", "What it looks at (default: the part)"},
@@ -139,7 +140,8 @@ void addPictureOptions(CLI::App& app, TraceCommand& o) {
         ->group(picture);
     app.add_flag_callback(
            "--denoise", [&o] { o.denoise = true; },
-           "Takes noise out of the finished picture, guided by its geometry (the default for all but .exr)")
+           "Takes noise out of the finished picture, guided by its geometry (the default of pictures of light, but "
+           ".exr)")
         ->group(picture);
     app.add_flag_callback(
            "--no-denoise", [&o] { o.denoise = false; }, "The mean of the samples as it is (the default for .exr)")
@@ -412,10 +414,13 @@ void readScene(TraceCommand& o, int argc, char** argv) {
     o = std::move(over);
 }
 
+std::vector<std::string> inputFilesOf(const TraceCommand& o) {
+    return assemble::inputFiles(o.objects, o.scene, o.prints.print.printer, o.film.camera_path);
+}
+
 std::string sourceOf(const TraceCommand& o, const std::string& files) {
     std::string text = fmt::format("vdbtrace {}\n{}{}\n", STRATUM_VERSION, o.said, files);
-    for (const std::string& name : {o.scene.brdf, o.scene.env}) text += assemble::identityOf(name) + "\n";
-    for (const assemble::ObjectOptions& object : o.objects) text += assemble::identityOf(object.material.brdf) + "\n";
+    for (const std::string& file : inputFilesOf(o)) text += assemble::identityOf(file) + "\n";
     if (!o.scene_text.empty()) text += o.scene_text;
     return sha256Hex(text).substr(0, 32);
 }

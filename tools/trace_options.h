@@ -6,7 +6,7 @@
 #include "trace_film_options.h"
 #include "trace_print_options.h"
 
-#include "assemble/object_file.h"
+#include "assemble/file/object_file.h"
 #include "march/brick/brick_layout.h"
 #include "shade/film/tonemap.h"
 #include "shade/integrator/render.h"
@@ -77,6 +77,10 @@ void addTraceOptions(CLI::App& app, TraceCommand& command);
 /// If the input is a scene, its values become the defaults and the command line is read once more over them. Throws
 /// UsageError or InputError.
 void readScene(TraceCommand& command, int argc, char** argv);
+
+/// Files that the options name, see assemble::inputFiles(). The inputs themselves are those of the objects, or beside
+/// them.
+std::vector<std::string> inputFilesOf(const TraceCommand& command);
 
 /// A hash of what a picture is made from: those options, the input files (`files` says what they hold), and the files
 /// that the options name.

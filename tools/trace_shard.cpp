@@ -78,18 +78,7 @@ std::string hashOf(const TraceCommand& o, const std::string& what, const std::ve
         text += fs::path(input).filename().string() + "\n";
         if (o.objects.empty()) add(input);
     }
-    const auto material = [&](const assemble::ObjectOptions& object) {
-        add(object.material.brdf);
-        for (const auto& each : object.material.each) add(each.second);
-    };
-    for (const assemble::ObjectOptions& object : o.objects) {
-        add(object.vdb);
-        material(object);
-    }
-    add(o.scene.brdf);
-    add(o.scene.env);
-    add(o.prints.print.printer);
-    add(o.film.camera_path);
+    for (const std::string& file : inputFilesOf(o)) add(file);
     return sha256Hex(text);
 }
 

@@ -3,16 +3,17 @@
 #include "command_line.h"
 #include "output_names.h"
 #include "run_files.h"
+#include "shade/environment/environment.h"
+#include "shade/finish/named_brdf.h"
 #include "trace_film.h"
 #include "trace_frame.h"
 #include "trace_options.h"
 #include "trace_shard.h"
 
+#include "assemble/file/file_facts.h"
 #include "assemble/finished_picture.h"
-#include "assemble/shape/file_facts.h"
 #include "base/atomic_file.h"
 #include "base/error.h"
-#include "shade/brdf/preset.h"
 #include "shade/film/picture.h"
 
 #include <fmt/format.h>
@@ -99,18 +100,8 @@ bool makesAny(const tools::TraceCommand& o) {
 }
 
 void listFiles(tools::RunFiles& files, const tools::TraceCommand& o, const std::string& option) {
-    const auto material = [&files](const std::string& text) {
-        if (!shade::isBrdfPreset(text)) files.reads(text);
-    };
     for (const std::string& input : o.inputs) files.reads(input);
-    for (const assemble::ObjectOptions& object : o.objects) {
-        files.reads(object.vdb);
-        material(object.material.brdf);
-        for (const auto& each : object.material.each) material(each.second);
-    }
-    material(o.scene.brdf);
-    if (!shade::isEnvironmentPreset(o.scene.env)) files.reads(o.scene.env);
-    files.reads(o.film.camera_path);
+    for (const std::string& file : tools::inputFilesOf(o)) files.reads(file);
     if (!o.film.output.empty()) return files.writes(o.film.output, "--film");
     for (std::size_t n = 0; n < tools::pictures(o); ++n) files.writes(tools::outputOf(o, n), option);
     files.writes(tools::recordOf(o), "--resume");

@@ -1,15 +1,16 @@
 // vdbview: level sets, prints and scenes -> a page in the browser to look at them.
 #include "command_line.h"
+#include "command_line/run_files.h"
 #include "print_options.h"
 #include "trace_print_options.h"
 
-#include "assemble/scene_file.h"
-#include "assemble/shape/file_facts.h"
+#include "assemble/file/file_facts.h"
+#include "assemble/file/input_files.h"
+#include "assemble/file/scene_file.h"
 #include "base/error.h"
 #include "base/input_file.h"
 #include "gcode/container/container.h"
 #include "serve/server.h"
-#include "view/file_watch.h"
 #include "view/viewer.h"
 #include "voxelize/grid/voxel_choice.h"
 
@@ -126,6 +127,7 @@ view::GivenInput givenInput(const ViewCommand& o, const std::string& path, const
         given.options.render = scene.render;
         given.options.render.seconds = 0.0;  // pictures by the clock differ from each other
         given.options.render.checkpoint.clear();
+        given.options.render.crop.reset();  // the page chooses the size
         given.denoising = {scene.denoise, false, scene.spp_given};
         if (scene.exposure_given) given.exposure = scene.tone.exposure;
     } else {
@@ -213,12 +215,16 @@ void run(const CLI::App& app, const ViewCommand& o) {
             tools::tellError(fmt::format("vdbview: {}\n", error.what()));
             inputs.emplace_back();
             inputs.back().path = path;
-            inputs.back().objects.emplace_back();
-            inputs.back().objects.front().vdb = path;
-            inputs.back().words = words;
-            inputs.back().options.tracing.prints = o.prints;
         }
+        inputs.back().again = [&o, path, words] { return givenInput(o, path, words); };
     }
+    tools::RunFiles files;
+    for (const view::GivenInput& input : inputs) {
+        files.reads(input.path);
+        for (const std::string& file : assemble::inputFiles(input.objects, input.options.scene, o.prints.print.printer))
+            files.reads(file);
+    }
+    files.writes(o.common.stats, "--stats");
     auto viewer = std::make_unique<view::Viewer>(std::move(inputs), [&o](const std::string& text) {
         if (o.common.quiet) return;
         tools::tellError(fmt::format("vdbview: {}\n", text));
@@ -237,8 +243,7 @@ void run(const CLI::App& app, const ViewCommand& o) {
         leading = std::make_unique<const LeadingPage>(server.url());
         openBrowser(leading->path());
     }
-    view::FileWatch watch(viewer->files());
-    if (watch.descriptor() >= 0) server.watch(watch.descriptor(), [&] { viewer->changed(watch.changed()); });
+    if (viewer->descriptor() >= 0) server.watch(viewer->descriptor(), [&viewer] { viewer->filesChanged(); });
     server.run();
     viewer.reset();  // before the server: what it still makes is sent through that
     tools::writeStats(o.common, {{"inputs", o.inputs}, {"peak_rss_bytes", tools::peakRssBytes()}});

@@ -3,7 +3,7 @@
 #include "assemble/print/lazy_print.h"
 #include "base/error.h"
 #include "base/parallel_for.h"
-#include "shade/brdf/brdf.h"
+#include "shade/finish/named_brdf.h"
 #include "trace/box_corners.h"
 #include "trace/convex_solid.h"
 #include "trace/scene_intersector.h"

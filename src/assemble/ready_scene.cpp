@@ -4,9 +4,24 @@
 #include "shade/post/exposure.h"
 #include "shade/scene/paper_tone.h"
 
+#include <glm/geometric.hpp>
+
 #include <utility>
 
 namespace stratum::assemble {
+namespace {
+
+// Along its view it leaves what it meets first.
+bool isInside(const shade::Camera& camera, const trace::Intersector& objects) {
+    trace::Ray ray;
+    ray.origin = camera.eye();
+    ray.direction = camera.forward();
+    trace::Hit hit;
+    return objects.makeTracer()->intersect(ray, hit) && glm::dot(hit.normal, ray.direction) > 0;
+}
+
+}  // namespace
+
 Stage makeStage(const TracedObjects& objects, const StageOptions& options, const ReadEvents& events) {
     const bool needs_light = shade::needsLight(options.render.integrator);
     shade::SceneOptions seen = options.scene;
@@ -24,6 +39,10 @@ Stage makeStage(const TracedObjects& objects, const StageOptions& options, const
         return Stage{shade::makeScene(seen, *objects.intersector, options.render.width, options.render.height),
                      glm::dvec3(0.0), std::nullopt};
     }();
+    if (seen.camera.eye && events.warning && isInside(stage.scene.camera, *objects.intersector))
+        events.warning({Warning::Kind::camera,
+                        "the camera is inside the plastic and sees it from within; move --eye, or cut it open with "
+                        "--clip"});
     stage.scene.objects = objects.materials;
     stage.scene.labels = objects.labels;
     shade::matchPaper(stage.scene, seen.bed_surface);

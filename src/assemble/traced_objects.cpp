@@ -1,6 +1,6 @@
 #include "assemble/traced_objects.h"
 
-#include "assemble/shape/file_facts.h"
+#include "assemble/file/file_facts.h"
 #include "assemble/shape/object_materials.h"
 #include "assemble/shape/shape.h"
 #include "base/error.h"

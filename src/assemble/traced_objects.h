@@ -1,9 +1,9 @@
 // Level sets, prints and shapes -> one intersector with materials, and reports about them.
 #pragma once
 
-#include "assemble/object_file.h"
+#include "assemble/file/object_file.h"
 #include "assemble/print/lazy_print.h"
-#include "assemble/tracing_options.h"
+#include "assemble/shape/tracing_options.h"
 #include "shade/film/legend.h"
 #include "shade/scene/material.h"
 #include "shade/scene/scene.h"

@@ -4,7 +4,7 @@
 #include "base/parallel_for.h"
 #include "compare/another_model.h"
 #include "compare/surface_samples.h"
-#include "export/surface_mesh.h"
+#include "export/mesh/surface_mesh.h"
 
 #include <openvdb/tools/Interpolation.h>
 #include <glm/geometric.hpp>

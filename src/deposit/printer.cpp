@@ -8,7 +8,7 @@
 #include "deposit/limits/json_limits.h"
 #include "deposit/limits/klipper.h"
 #include "deposit/limits/printer_text.h"
-#include "gcode/machine/machine_limits.h"
+#include "gcode/printer/machine_limits.h"
 
 #include <fast_float/fast_float.h>
 #include <fmt/format.h>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "deposit/sag.h"
-#include "gcode/machine/read_options.h"
+#include "gcode/printer/read_options.h"
 
 #include <string>
 

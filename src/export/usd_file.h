@@ -1,7 +1,7 @@
 // Writes a .usda beside a .vdb: references to its grids for USD (Houdini Solaris, Omniverse, Karma).
 #pragma once
 
-#include "export/surface_mesh.h"
+#include "export/mesh/surface_mesh.h"
 
 #include <openvdb/openvdb.h>
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "base/names.h"
-#include "gcode/machine/read_options.h"
+#include "gcode/printer/read_options.h"
 
 namespace stratum::gcode {
 

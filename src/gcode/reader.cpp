@@ -17,7 +17,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstddef>
 #include <optional>
+#include <string_view>
+#include <unordered_map>
 #include <utility>
 
 namespace stratum::gcode {
@@ -105,16 +108,18 @@ void takeAskedColors(const ReadOptions& options, const std::vector<MixChange>& m
 // numbers, so that each can be chosen.
 void nameObjects(const Program& program, Toolpath& toolpath) {
     constexpr std::string_view kLabel = "unique label id: ";
-    const auto& names = program.facts.object_names;
+    std::unordered_map<std::string_view, std::string_view> names;  // by number
+    std::unordered_map<std::string_view, std::size_t> uses;
+    for (const auto& [number, name] : program.facts.object_names) {
+        names.try_emplace(number, name);
+        ++uses[name];
+    }
     for (std::string& object : toolpath.objects) {
         if (!object.starts_with(kLabel)) continue;
         const std::string number = object.substr(kLabel.size());
-        const auto named =
-            std::find_if(names.begin(), names.end(), [&](const auto& one) { return one.first == number; });
+        const auto named = names.find(number);
         if (named == names.end()) continue;
-        const auto same =
-            std::count_if(names.begin(), names.end(), [&](const auto& one) { return one.second == named->second; });
-        object = same > 1 ? fmt::format("{} {}", named->second, number) : named->second;
+        object = uses[named->second] > 1 ? fmt::format("{} {}", named->second, number) : std::string(named->second);
     }
 }
 

@@ -1,7 +1,7 @@
 // Bytes -> Toolpath: the entry point of this library.
 #pragma once
 
-#include "gcode/machine/read_options.h"
+#include "gcode/printer/read_options.h"
 #include "gcode/toolpath/toolpath.h"
 
 #include <string_view>

@@ -6,7 +6,7 @@
 // RepRapFirmware 3.5.3, DDA.cpp (InitStandardMove). Marlin 2 counts steps: marlin_look_ahead.h.
 #pragma once
 
-#include "gcode/machine/motion.h"
+#include "gcode/printer/motion.h"
 #include "motion/segment.h"
 
 namespace stratum::motion {

@@ -5,8 +5,8 @@
 // acceleration and jerk apart. The first layers are kept until the fit, then they are planned as all others.
 #pragma once
 
-#include "gcode/machine/limit_origins.h"
-#include "gcode/machine/motion.h"
+#include "gcode/printer/limit_origins.h"
+#include "gcode/printer/motion.h"
 
 #include <cstddef>
 #include <optional>

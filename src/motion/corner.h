@@ -6,7 +6,7 @@
 // klipper_look_ahead.h, marlin_look_ahead.h.
 #pragma once
 
-#include "gcode/machine/motion.h"
+#include "gcode/printer/motion.h"
 #include "motion/segment.h"
 
 namespace stratum::motion {

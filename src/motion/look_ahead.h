@@ -1,7 +1,7 @@
 // Finds the speeds at the corners of a stream of segments: one class for each way in which firmwares look ahead.
 #pragma once
 
-#include "gcode/machine/motion.h"
+#include "gcode/printer/motion.h"
 #include "motion/segment.h"
 #include "motion/trapezoid.h"
 

@@ -3,7 +3,7 @@
 // taken to be never late, so that the queue is full until the machine has to stop.
 #pragma once
 
-#include "gcode/machine/motion.h"
+#include "gcode/printer/motion.h"
 #include "motion/look_ahead.h"
 #include "motion/segment.h"
 #include "motion/trapezoid.h"

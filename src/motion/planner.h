@@ -1,7 +1,7 @@
 // A firmware's motion planner: computes the speed at every moment from the moves of a program.
 #pragma once
 
-#include "gcode/machine/motion.h"
+#include "gcode/printer/motion.h"
 #include "motion/look_ahead.h"
 #include "motion/segment.h"
 #include "motion/trapezoid.h"

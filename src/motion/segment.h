@@ -1,7 +1,7 @@
 // A straight segment of motion: the planner's input.
 #pragma once
 
-#include "gcode/machine/motion.h"
+#include "gcode/printer/motion.h"
 
 #include <array>
 #include <cstdint>

@@ -1,7 +1,7 @@
 // The moves of a program that lay nothing.
 #pragma once
 
-#include "gcode/machine/motion.h"
+#include "gcode/printer/motion.h"
 
 #include <cstdint>
 #include <vector>

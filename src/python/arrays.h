@@ -8,7 +8,10 @@
 #include <pybind11/pybind11.h>
 #include <glm/vec3.hpp>
 
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <string_view>
 #include <vector>
 
@@ -44,6 +47,12 @@ pybind11::array_t<Value> arrayOf(std::vector<Value>&& values, std::vector<pybind
     auto* kept = new std::vector<Value>(std::move(values));
     const pybind11::capsule owner(kept, [](void* vector) { delete static_cast<std::vector<Value>*>(vector); });
     return pybind11::array_t<Value>(std::move(shape), kept->data(), owner);
+}
+
+/// Of an attribute that counts: -1 where there is no value, and the nearest that fits for what is too large.
+inline std::int32_t integerOf(float value) {
+    constexpr float kMost = 2147483520.0F;  // the largest float that fits
+    return std::isnan(value) ? -1 : static_cast<std::int32_t>(std::clamp(value, -kMost, kMost));
 }
 
 /// A copy of records of that type. Throws UsageError, with the remedy, for another shape or type

@@ -225,7 +225,7 @@ py::array attributeArray(const std::vector<float>& values, Kind kind) {
     std::vector<std::int32_t> integers(kind == Kind::integer ? numbers.size() : 0);
     for (std::size_t n = 0; n < numbers.size(); ++n) {
         numbers[n] = values[3 * n];
-        if (kind == Kind::integer) integers[n] = std::isnan(numbers[n]) ? -1 : static_cast<std::int32_t>(numbers[n]);
+        if (kind == Kind::integer) integers[n] = integerOf(numbers[n]);
     }
     if (kind == Kind::integer) return arrayOf(std::move(integers), {count});
     return arrayOf(std::move(numbers), {count});

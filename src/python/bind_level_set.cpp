@@ -282,10 +282,8 @@ py::array lookUp(const march::AttributeSource& source, Kind kind, const py::obje
     const auto count = static_cast<py::ssize_t>(points.size());
     if (kind == Kind::color) return arrayOf(std::move(values), {count, 3});
     if (kind == Kind::number) return arrayOf(std::move(values), {count});
-    constexpr float kMost = 2147483520.0F;  // the largest float that fits
     std::vector<std::int32_t> integers(values.size());
-    for (std::size_t n = 0; n < values.size(); ++n)
-        integers[n] = std::isnan(values[n]) ? -1 : static_cast<std::int32_t>(std::clamp(values[n], -kMost, kMost));
+    for (std::size_t n = 0; n < values.size(); ++n) integers[n] = integerOf(values[n]);
     return arrayOf(std::move(integers), {count});
 }
 

@@ -1,5 +1,6 @@
 #include "python/bind_measures.h"
 
+#include "base/json_text.h"
 #include "python/conversion.h"
 #include "python/errors.h"
 #include "python/long_call.h"
@@ -48,7 +49,7 @@ constexpr std::array<std::pair<std::string_view, compare::ModelPlacement>, 2> kP
     {{"fit", compare::ModelPlacement::fit}, {"bed", compare::ModelPlacement::bed}}};
 
 py::object dictOf(const nlohmann::ordered_json& json) {
-    return py::module_::import("json").attr("loads")(inPython(json.dump()));
+    return py::module_::import("json").attr("loads")(inPython(jsonText(json)));
 }
 
 py::object reportPrint(const ToolpathObject& print, const py::object& progress, const py::kwargs& given) {

@@ -6,6 +6,7 @@
 #include "python/options/signature.h"
 #include "python/toolpath_object.h"
 
+#include "assemble/file/file_facts.h"
 #include "assemble/finished_picture.h"
 #include "base/atomic_file.h"
 #include "base/error.h"
@@ -13,6 +14,7 @@
 #include "shade/post/denoise.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <pybind11/stl.h>
 
 #include <filesystem>
@@ -21,6 +23,7 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 namespace stratum::python {
 
@@ -91,6 +94,11 @@ PictureObject makePicture(const std::string& path, RenderCall& call, const Repor
     return picture;
 }
 
+// Options without an effect on that source are refused, as vdbtrace does.
+void refuse(const std::vector<std::string>& given, const std::string& why) {
+    if (!given.empty()) throw UsageError(fmt::format("render(): {}: {}", fmt::join(given, ", "), why));
+}
+
 std::unique_ptr<PictureObject> render(const py::object& source, const py::object& progress, const py::kwargs& given) {
     Keywords keywords("render", given);
     RenderCall call = renderCallOf(keywords);
@@ -100,11 +108,17 @@ std::unique_ptr<PictureObject> render(const py::object& source, const py::object
     if (py::isinstance<ToolpathObject>(source)) {
         if (!call.tool_colors.empty())
             throw UsageError("render(): color: of a Toolpath that is read already, read() takes filament_colors");
+        refuse(call.of_reading, "of G-code that is read here; of a Toolpath, read() takes them");
         const auto& print = source.cast<const ToolpathObject&>();
         call.picture.tracing.prints.toolpath = print.toolpath;
         path = print.source.empty() ? "print" : print.source;
     } else if (py::isinstance<py::str>(source) || py::hasattr(source, "__fspath__")) {
         path = py::module_::import("os").attr("fspath")(source).cast<std::string>();
+        if (assemble::isVdbFile(path)) {
+            const std::string why = path + " is a level set, whose voxels are made; give the G-code, or leave them out";
+            refuse(call.of_prints, why);
+            refuse(call.of_reading, why);
+        }
     } else {
         throw py::type_error(
             "render(): source: expected a Toolpath or a path; write a LevelSet to a .vdb first, LevelSet.write(path)");

@@ -5,7 +5,7 @@
 #include "python/named_tuple.h"
 
 #include "base/error.h"
-#include "export/surface_mesh.h"
+#include "export/mesh/surface_mesh.h"
 
 #include <fmt/format.h>
 

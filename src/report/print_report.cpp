@@ -192,6 +192,7 @@ private:
         const double pores = std::max(enclosed - plastic, 0.0);
         const double airtight = std::min(closed * cell, pores);
         add("plastic_volume", plastic);
+        plastic_ = plastic;
         add("enclosed_volume", enclosed);
         add("porosity", percent(pores, enclosed));
         add("open_porosity", percent(pores - airtight, enclosed));
@@ -221,13 +222,17 @@ private:
         for (std::size_t a = 0; a < 3; ++a)
             for (std::size_t b = 0; b < 3; ++b) tensor[a][b] = (a == b ? trace : 0) - central(a, b);
         tensor = turned(tensor, lies);
+        // The cells hold some per cent more than the beads, all over the print.
+        const double volume = plastic_ > 0 ? plastic_ : v * std::pow(h, 3);
+        for (Vector3& row : tensor)
+            for (double& value : row) value *= volume / (v * std::pow(h, 3));
         add("inertia_of_volume", tensor);
         if (!mass_) {
             leaveOut("inertia", "the density is not known", "give it with --density G_CM3");
             return;
         }
         for (Vector3& row : tensor)
-            for (double& value : row) value *= *mass_ / (v * std::pow(h, 3));
+            for (double& value : row) value *= *mass_ / volume;
         add("inertia", tensor);
     }
 
@@ -398,6 +403,7 @@ private:
     PrintReport report_;
     double deposited_ = 0;        // mm^3
     std::optional<double> mass_;  // g
+    double plastic_ = 0;          // mm^3
 };
 
 }  // namespace

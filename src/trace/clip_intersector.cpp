@@ -97,15 +97,11 @@ public:
     }
 
     glm::dvec3 shadingNormal(const Hit& hit) override {
-        for (const ClipPlane& plane : planes_)
-            if (hit.normal == plane.normal) return hit.normal;
-        return tracer_->shadingNormal(hit);
+        return hit.cut != 0 ? hit.normal : tracer_->shadingNormal(hit);
     }
     glm::dvec3 grain(const Hit& hit) override {
         // A cut was not drawn by a nozzle.
-        for (const ClipPlane& plane : planes_)
-            if (hit.normal == plane.normal) return glm::dvec3(0.0);
-        return tracer_->grain(hit);
+        return hit.cut != 0 ? glm::dvec3(0.0) : tracer_->grain(hit);
     }
     std::optional<glm::vec3> attribute(const Hit& hit, std::size_t which) override {
         return tracer_->attribute(hit, which);
@@ -120,6 +116,7 @@ private:
         }
         if (found.t <= std::min(part.end, part.ray.t_max)) {
             hit = found;
+            hit.cut = 0;
             return true;
         }
         if (!from_inside || part.end > part.ray.t_max) return false;
@@ -132,6 +129,7 @@ private:
         hit.t = t;
         hit.position = part.ray.origin + t * part.ray.direction;
         hit.normal = planes_[static_cast<std::size_t>(plane)].normal;
+        hit.cut = 1;
         return hit;
     }
 

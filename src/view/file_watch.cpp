@@ -15,11 +15,14 @@ namespace stratum::view {
 namespace fs = std::filesystem;
 
 FileWatch::FileWatch(const std::vector<std::string>& paths) : descriptor_(inotify_init1(IN_NONBLOCK | IN_CLOEXEC)) {
+    add(paths);
+}
+
+void FileWatch::add(const std::vector<std::string>& paths) {
     if (descriptor_ < 0) return;
-    for (const std::string& path : paths) {
-        files_[path] = identityOf(path);
-        arm(path);
-    }
+    const std::lock_guard lock(mutex_);
+    for (const std::string& path : paths)
+        if (files_.try_emplace(path, identityOf(path)).second) arm(path);
 }
 
 FileWatch::~FileWatch() {
@@ -33,7 +36,8 @@ FileWatch::Identity FileWatch::identityOf(const std::string& path) {
     return {facts.st_dev, facts.st_ino, facts.st_size, facts.st_mtim.tv_sec, facts.st_mtim.tv_nsec};
 }
 
-void FileWatch::add(const std::string& place, std::uint32_t events, const std::string& name, const std::string& path) {
+void FileWatch::watch(const std::string& place, std::uint32_t events, const std::string& name,
+                      const std::string& path) {
     const int watch = inotify_add_watch(descriptor_, place.c_str(), events);
     if (watch >= 0) watches_[watch].insert({name, path});
 }
@@ -50,16 +54,17 @@ void FileWatch::arm(const std::string& path) {
             name = folder.filename();
             folder = folder.parent_path();
         }
-        add(folder.string(), IN_CLOSE_WRITE | IN_MOVED_TO | IN_CREATE | IN_ONLYDIR, name.string(), path);
+        watch(folder.string(), IN_CLOSE_WRITE | IN_MOVED_TO | IN_CREATE | IN_ONLYDIR, name.string(), path);
         failed.clear();
         if (!fs::is_symlink(at, failed)) break;
         const fs::path next = fs::read_symlink(at, failed);
         at = next.is_absolute() ? next : at.parent_path() / next;
     }
-    add(path, IN_CLOSE_WRITE, "", path);  // under any of its names
+    watch(path, IN_CLOSE_WRITE, "", path);  // under any of its names
 }
 
 std::set<std::string> FileWatch::changed() {
+    const std::lock_guard lock(mutex_);
     std::set<std::string> touched;
     std::set<std::string> written;
     alignas(inotify_event) std::array<char, 16384> buffer;
@@ -71,14 +76,14 @@ std::set<std::string> FileWatch::changed() {
             std::memcpy(&event, buffer.data() + at, sizeof(event));
             const std::string name = event.len > 0 ? buffer.data() + at + sizeof(event) : "";
             at += static_cast<ssize_t>(sizeof(event) + event.len);
-            const auto watch = watches_.find(event.wd);
-            if (watch == watches_.end()) continue;
-            for (const auto& [its_name, path] : watch->second) {
+            const auto found = watches_.find(event.wd);
+            if (found == watches_.end()) continue;
+            for (const auto& [its_name, path] : found->second) {
                 if (its_name != name) continue;
                 touched.insert(path);
                 if ((event.mask & (IN_CLOSE_WRITE | IN_MOVED_TO)) != 0) written.insert(path);
             }
-            if ((event.mask & IN_IGNORED) != 0) watches_.erase(watch);
+            if ((event.mask & IN_IGNORED) != 0) watches_.erase(found);
         }
     }
     std::set<std::string> paths;

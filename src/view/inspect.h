@@ -1,8 +1,8 @@
 // What lies under a point of the picture.
 #pragma once
 
-#include "view/document.h"
-#include "view/view_scene.h"
+#include "view/input/document.h"
+#include "view/input/view_scene.h"
 
 #include <glm/vec2.hpp>
 #include <nlohmann/json.hpp>

@@ -1,7 +1,7 @@
 // Steps of reading, as messages for pages.
 #pragma once
 
-#include "assemble/read_events.h"
+#include "assemble/file/read_events.h"
 
 #include <nlohmann/json.hpp>
 

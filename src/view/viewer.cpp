@@ -1,6 +1,7 @@
 #include "view/viewer.h"
 
 #include "base/error.h"
+#include "base/json_text.h"
 #include "base/stopwatch.h"
 #include "view/asked/message.h"
 #include "view/loading_events.h"
@@ -19,11 +20,9 @@ namespace {
 
 using Json = nlohmann::json;
 
-std::string dump(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
-
 // A picture with its head: the head's length as four bytes, the least first, the head, the file.
 std::vector<std::uint8_t> packed(const Json& head, const std::vector<std::uint8_t>& file) {
-    const std::string text = dump(head);
+    const std::string text = jsonText(head);
     std::vector<std::uint8_t> bytes;
     bytes.reserve(4 + text.size() + file.size());
     for (unsigned shift = 0; shift < 32; shift += 8) bytes.push_back(static_cast<std::uint8_t>(text.size() >> shift));
@@ -36,7 +35,7 @@ Output outputTo(const std::shared_ptr<serve::Client>& client) {
     // The page may be gone long before its last picture is made.
     const std::weak_ptr<serve::Client> weak = client;
     return {[weak](const Json& message) {
-                if (const auto to = weak.lock()) to->sendText(dump(message));
+                if (const auto to = weak.lock()) to->sendText(jsonText(message));
             },
             [weak](const Json& head, const std::vector<std::uint8_t>& file) {
                 if (const auto to = weak.lock()) to->sendBytes(packed(head, file));
@@ -46,24 +45,25 @@ Output outputTo(const std::shared_ptr<serve::Client>& client) {
 }  // namespace
 
 Viewer::Viewer(std::vector<GivenInput> inputs, std::function<void(const std::string&)> say) : say_(std::move(say)) {
-    for (GivenInput& given : inputs) inputs_.push_back(std::make_unique<Input>(std::move(given)));
+    for (GivenInput& given : inputs) {
+        inputs_.push_back(std::make_unique<Input>(std::move(given)));
+        watch_.add(inputs_.back()->files);
+    }
     // The first is read before a page asks for it.
     loop_.post([this] { load(*inputs_.front()); });
 }
 
 Viewer::~Viewer() = default;
 
-std::vector<std::string> Viewer::files() const {
-    std::vector<std::string> files;
-    for (const auto& input : inputs_)
-        for (const std::string& file : input->document.files()) files.push_back(file);
-    return files;
-}
-
 void Viewer::load(Input& input) {
     Stopwatch watch;
-    const std::string& path = input.document.given().path;
     try {
+        input.document.update();
+        {
+            const std::lock_guard lock(input.mutex);
+            input.files = input.document.files();
+        }
+        watch_.add(input.document.files());
         input.document.requireFiles();
         const PicturePlan plan = planPicture(input.document.given(), ViewState());
         input.scene.makeObjects(plan, loadingEvents([&input](const Json& message) {
@@ -71,7 +71,7 @@ void Viewer::load(Input& input) {
                                     for (const Output& page : input.waiting) page.text(message);
                                 }));
         input.failure.clear();
-        say_(fmt::format("{}: ready after {:.2f} s", path, watch.lap()));
+        say_(fmt::format("{}: ready after {:.2f} s", input.path, watch.lap()));
     } catch (const std::exception& error) {
         input.failure = error.what();
         say_(input.failure);
@@ -82,9 +82,12 @@ void Viewer::changed(const std::set<std::string>& paths) {
     if (paths.empty()) return;
     for (const auto& each : inputs_) {
         Input& input = *each;
-        const std::vector<std::string> files = input.document.files();
-        if (std::none_of(files.begin(), files.end(), [&](const std::string& file) { return paths.contains(file); }))
-            continue;
+        {
+            const std::lock_guard lock(input.mutex);
+            if (std::none_of(input.files.begin(), input.files.end(),
+                             [&](const std::string& file) { return paths.contains(file); }))
+                continue;
+        }
         std::vector<std::shared_ptr<Viewport>> viewports;
         for (const auto& [client, page] : pages_)
             if (inputs_[page.file].get() == &input) viewports.push_back(page.viewport);
@@ -94,7 +97,7 @@ void Viewer::changed(const std::set<std::string>& paths) {
             load(input);
             for (const auto& viewport : viewports) {
                 if (!input.failure.empty()) {
-                    viewport->output().text({{"type", "failed"}, {"text", input.failure}});
+                    viewport->fail(input.failure);
                     continue;
                 }
                 viewport->output().text({{"type", "facts"}, {"facts", input.document.facts()}});
@@ -110,7 +113,7 @@ void Viewer::open(const std::shared_ptr<serve::Client>& client, std::size_t file
     page = {nullptr, file};
     Input& input = *inputs_[file];
     page.viewport = std::make_shared<Viewport>(input.document, outputTo(client));
-    client->sendText(dump({{"type", "loading"}, {"step", "reading"}}));
+    client->sendText(jsonText(Json{{"type", "loading"}, {"step", "reading"}}));
     {
         const std::lock_guard lock(input.mutex);
         input.waiting.push_back(page.viewport->output());
@@ -130,9 +133,8 @@ void Viewer::open(const std::shared_ptr<serve::Client>& client, std::size_t file
 
 void Viewer::opened(const std::shared_ptr<serve::Client>& client) {
     Json files = Json::array();
-    for (const auto& input : inputs_)
-        files.push_back(std::filesystem::path(input->document.given().path).filename().string());
-    client->sendText(dump({{"type", "hello"}, {"version", STRATUM_VERSION}, {"files", std::move(files)}}));
+    for (const auto& input : inputs_) files.push_back(std::filesystem::path(input->path).filename().string());
+    client->sendText(jsonText(Json{{"type", "hello"}, {"version", STRATUM_VERSION}, {"files", std::move(files)}}));
     open(client, 0);
 }
 
@@ -149,7 +151,7 @@ void Viewer::received(const std::shared_ptr<serve::Client>& client, std::string_
         page->second.viewport->ask(std::move(message));
         loop_.wake();
     } catch (const InputError& error) {
-        client->sendText(dump({{"type", "refused"}, {"text", error.what()}}));
+        client->sendText(jsonText(Json{{"type", "refused"}, {"text", error.what()}}));
     }
 }
 

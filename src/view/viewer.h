@@ -2,9 +2,10 @@
 #pragma once
 
 #include "serve/server.h"
-#include "view/document.h"
+#include "view/file_watch.h"
+#include "view/input/document.h"
+#include "view/input/view_scene.h"
 #include "view/render_loop.h"
-#include "view/view_scene.h"
 
 #include <functional>
 #include <map>
@@ -30,9 +31,12 @@ public:
     Viewer(const Viewer&) = delete;
     Viewer& operator=(const Viewer&) = delete;
 
-    /// Of all inputs, to be watched.
-    std::vector<std::string> files() const;
-    /// These of them have changed: reads them anew, and shows them where they are looked at.
+    /// Readable when files of the inputs may have changed: then filesChanged() is to be called. -1: the system tells
+    /// nobody of changes.
+    int descriptor() const { return watch_.descriptor(); }
+    /// Reads those anew that have changed, and shows them where they are looked at.
+    void filesChanged() { changed(watch_.changed()); }
+    /// These files have changed.
     void changed(const std::set<std::string>& paths);
 
     void opened(const std::shared_ptr<serve::Client>& client) override;
@@ -42,12 +46,15 @@ public:
 private:
     /// An input and what is ready of it; of the loop's thread.
     struct Input {
-        explicit Input(GivenInput given) : document(std::move(given)), scene(document) {}
+        explicit Input(GivenInput given)
+            : path(given.path), document(std::move(given)), scene(document), files(document.files()) {}
+        const std::string path;
         Document document;
         ViewScene scene;  // of the input as it was given
         std::string failure;
-        std::mutex mutex;             // of the next one
-        std::vector<Output> waiting;  // pages that were opened before it is ready
+        std::mutex mutex;                // of the next ones
+        std::vector<Output> waiting;     // pages that were opened before it is ready
+        std::vector<std::string> files;  // that it depends on
     };
     struct Page {
         std::shared_ptr<Viewport> viewport;
@@ -57,6 +64,7 @@ private:
     void open(const std::shared_ptr<serve::Client>& client, std::size_t file);
 
     const std::function<void(const std::string&)> say_;
+    FileWatch watch_;
     std::vector<std::unique_ptr<Input>> inputs_;
     std::map<std::shared_ptr<serve::Client>, Page> pages_;  // of the server's thread
     RenderLoop loop_;                                       // the last one: it uses the others

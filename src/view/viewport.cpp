@@ -40,7 +40,7 @@ std::vector<std::uint8_t> movingPicture(const ViewedPicture& picture, shade::Ren
     return shade::toDisplay(shade::render(*picture.print, picture.scene, options).film, picture.tone);
 }
 
-std::string nameOf(const std::string& path) { return std::filesystem::path(path).filename().string(); }
+std::string fileNameOf(const std::string& path) { return std::filesystem::path(path).filename().string(); }
 
 }  // namespace
 
@@ -90,7 +90,8 @@ bool Viewport::hasWork(bool urgent) const {
     const bool may_send = on_the_way_ < kMostOnTheWay;
     if ((asked_ && may_send) || !inspects_.empty() || program_ || find_ || (stage_ == Stage::moving && may_send))
         return true;
-    if (urgent) return false;
+    // What else there is to do waits until the page has taken what is on its way.
+    if (urgent || asked_ || stage_ == Stage::moving) return false;
     if (((beads_asked_ || moves_asked_) && may_send) || layers_asked_) return true;
     if (stage_ == Stage::waiting) return Clock::now() >= rest_at_;
     return stage_ == Stage::exact || stage_ == Stage::rough || stage_ == Stage::final || !saves_.empty() || saving_;
@@ -104,7 +105,7 @@ std::optional<Viewport::Clock::time_point> Viewport::worksAt() const {
 
 bool Viewport::overtaken() const {
     const std::lock_guard lock(mutex_);
-    return asked_.has_value() || !inspects_.empty() || program_ || find_;
+    return (asked_ && on_the_way_ < kMostOnTheWay) || !inspects_.empty() || program_ || find_;
 }
 
 void Viewport::set(Stage stage) {
@@ -123,6 +124,7 @@ void Viewport::take() {
     current_ = std::move(*asked);
     still_.reset();
     full_.reset();
+    document_.update();
     plan_ = planPicture(document_.given(), current_.state);
     // A page that draws what moves wants nothing meanwhile, also not the processor's time.
     if (current_.own) return set(current_.moving ? Stage::idle : Stage::exact);
@@ -144,14 +146,17 @@ void Viewport::step(const std::function<void()>& check) {
     }
 }
 
-void Viewport::fail(const char* text) {
+void Viewport::stop() {
     still_.reset();
     saving_.reset();
-    {
-        const std::lock_guard lock(mutex_);
-        stage_ = Stage::idle;
-        saves_.clear();
-    }
+    full_.reset();
+    const std::lock_guard lock(mutex_);
+    stage_ = Stage::idle;
+    saves_.clear();
+}
+
+void Viewport::fail(const std::string& text) {
+    stop();
     output_.text({{"type", "failed"}, {"number", current_.number}, {"text", text}});
 }
 
@@ -283,7 +288,7 @@ void Viewport::workOnFinal(const std::function<void()>& check) {
     if (!still_) {
         if (!full_) full_ = scene_->picture(*plan_, options.width, options.height);
         still_ =
-            std::make_unique<StillPicture>(*full_, *plan_, nameOf(document_.given().path), scene_->sharedObjects());
+            std::make_unique<StillPicture>(*full_, *plan_, fileNameOf(document_.given().path), scene_->sharedObjects());
     }
     if (!still_->done()) {
         still_->traceBand(check);
@@ -309,7 +314,7 @@ void Viewport::workOnSave(const std::function<void()>& check) {
         const shade::RenderOptions& options = plan.options.render;
         scene_->makeObjects(plan, loadingEvents(output_.text));
         saving_ = std::make_unique<StillPicture>(scene_->picture(plan, options.width, options.height), plan,
-                                                 nameOf(document_.given().path), scene_->sharedObjects());
+                                                 fileNameOf(document_.given().path), scene_->sharedObjects());
         saving_number_ = save.number;
     }
     const shade::RenderOptions& options = saving_->plan().options.render;

@@ -4,11 +4,11 @@
 #include "view/asked/message.h"
 #include "view/beads/bead_stream.h"
 #include "view/beads/move_stream.h"
-#include "view/document.h"
-#include "view/output.h"
+#include "view/input/document.h"
+#include "view/input/output.h"
+#include "view/input/view_scene.h"
 #include "view/picture/frame_scale.h"
 #include "view/picture/still_picture.h"
-#include "view/view_scene.h"
 
 #include <chrono>
 #include <cstdint>
@@ -48,6 +48,8 @@ public:
     /// Does one piece of work. `check` is called between tiles of what may be put off; what it throws ends the piece,
     /// which is done again later, and is passed on.
     void step(const std::function<void()>& check);
+    /// There is no picture of what was asked for: gives up what is at work, and says so. On the thread of step().
+    void fail(const std::string& text);
     Document& document() { return document_; }
     const Output& output() const { return output_; }
 
@@ -64,7 +66,7 @@ private:
     void workOnSave(const std::function<void()>& check);
     void answer(const InspectMessage& inspect);
     void answer(const char* type, const std::function<nlohmann::json()>& of_document);
-    void fail(const char* text);
+    void stop();
     void send(const char* kind, const char* type, int width, int height, const ViewedPicture& picture,
               const PicturePlan& plan, std::uint64_t number, const std::vector<std::uint8_t>& file);
     ViewedPicture small(const PicturePlan& plan, int width, int height, bool* exact);

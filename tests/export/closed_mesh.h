@@ -1,7 +1,7 @@
 // What makes a mesh closed: every edge runs as often one way as the other.
 #pragma once
 
-#include "export/surface_mesh.h"
+#include "export/mesh/surface_mesh.h"
 
 #include <gtest/gtest.h>
 

@@ -3,7 +3,8 @@
 //
 // How to build and run it stands in scripts/fuzz.sh.
 #include "base/error.h"
-#include "shade/brdf/preset.h"
+#include "shade/environment/environment.h"
+#include "shade/finish/named_brdf.h"
 #include "shade/palette/filament_color.h"
 #include "view/asked/message.h"
 #include "view/asked/picture_plan.h"

@@ -137,6 +137,17 @@ class Pictures(unittest.TestCase):
         with self.assertRaisesRegex(TypeError, "LevelSet.write"):
             stratum.render(3)
 
+    def test_options_without_effect_are_refused(self):
+        toolpath = stratum.read(gcode("tile.gcode"))
+        for options in ({"flow": 50}, {"beads": "settled"}, {"section": "50%"}, {"printer": "typical"}):
+            with self.assertRaisesRegex(stratum.UsageError, f"{next(iter(options))}: .*read\\(\\) takes them"):
+                stratum.render(toolpath, **options)
+        level_set = path_of("made.vdb")
+        stratum.voxelize(toolpath, voxel_size=0.4).write(level_set)
+        for options in ({"printed": "20%"}, {"layers": "1:3"}, {"flow": 50}, {"voxel_size": 2}):
+            with self.assertRaisesRegex(stratum.UsageError, f"{next(iter(options))}: .*made.vdb is a level set"):
+                stratum.render(level_set, **options)
+
 
 if __name__ == "__main__":
     unittest.main()

@@ -1,6 +1,7 @@
 #include "trace/clip_intersector.h"
 
 #include "base/error.h"
+#include "trace/convex_solid.h"
 #include "trace/sdf.h"
 #include "trace/sdf_intersector.h"
 
@@ -98,6 +99,43 @@ TEST(ClipIntersector, StreamsAreTheSame) {
             EXPECT_EQ(hits[n].t, hit.t);
             EXPECT_EQ(hits[n].normal, hit.normal);
         }
+    }
+}
+
+// A box that was drawn by a nozzle, along x.
+class Printed final : public Intersector {
+public:
+    std::unique_ptr<Tracer> makeTracer() const override { return std::make_unique<Lines>(box_->makeTracer()); }
+    std::string_view name() const override { return box_->name(); }
+    Box bounds() const override { return box_->bounds(); }
+    double voxelSize() const override { return box_->voxelSize(); }
+    std::size_t bytes() const override { return box_->bytes(); }
+    double surfaceOffset() const override { return box_->surfaceOffset(); }
+
+private:
+    class Lines final : public Tracer {
+    public:
+        explicit Lines(std::unique_ptr<Tracer> box) : box_(std::move(box)) {}
+        bool intersect(const Ray& ray, Hit& hit) override { return box_->intersect(ray, hit); }
+        bool occluded(const Ray& ray) override { return box_->occluded(ray); }
+        glm::dvec3 grain(const Hit&) override { return {1, 0, 0}; }
+
+    private:
+        const std::unique_ptr<Tracer> box_;
+    };
+    const std::shared_ptr<const Intersector> box_ = makeBoxSolid({-1, -1, -1}, {1, 1, 1});
+};
+
+// A flat top has the normal of a level cut above it.
+TEST(ClipIntersector, OnlyTheCutHasNoGrain) {
+    const Ray down{{0.5, 0, 9}, {0, 0, -1}, 0, kInfinity};
+    for (const bool cuts : {false, true}) {
+        const auto tracer =
+            makeClipIntersector(std::make_shared<Printed>(), {{{0, 0, 1}, cuts ? 0.5 : 100.0}})->makeTracer();
+        std::vector<Hit> hits(1);
+        tracer->intersectStream({&down, 1}, hits);
+        EXPECT_EQ(tracer->grain(hits[0]), glm::dvec3(cuts ? 0 : 1, 0, 0));
+        EXPECT_EQ(hits[0].normal, glm::dvec3(0, 0, 1));
     }
 }
 

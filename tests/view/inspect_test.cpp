@@ -3,7 +3,7 @@
 #include "belt_box.h"
 #include "given_tile.h"
 #include "scratch_folder.h"
-#include "view/program_lines.h"
+#include "view/input/program_lines.h"
 
 #include <gtest/gtest.h>
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "view/asked/message.h"
-#include "view/output.h"
+#include "view/input/output.h"
 
 #include <algorithm>
 #include <chrono>

@@ -87,7 +87,7 @@ TEST(Viewer, ShowsChangesAndFailures) {
         const std::lock_guard lock(mutex);
         said.push_back(text);
     });
-    EXPECT_EQ(viewer.files(), std::vector<std::string>{path});
+    EXPECT_GE(viewer.descriptor(), 0);
     const auto page = std::make_shared<Page>();
     viewer.opened(page);
     viewer.received(page, showText(1));

@@ -16,6 +16,7 @@ class OnePage {
 public:
     OnePage() : scene_(document_), viewport(document_, shown.output()) { viewport.startWith(scene_); }
     void workUntilIdle() {
+        viewport.ask(ShownMessage{});
         for (int n = 0; n < 1000 && (viewport.hasWork(false) || viewport.worksAt()); ++n) {
             if (viewport.hasWork(false)) viewport.step([] {});
             viewport.ask(ShownMessage{});
@@ -51,8 +52,25 @@ TEST(Viewport, SendsNoMoreThanThePageTakes) {
         if (page.viewport.hasWork(true)) page.viewport.step([] {});
     }
     EXPECT_EQ(page.shown.kinds().size(), 2U);  // that are on their way
+    // It does not work on what it may not send, nor begins it again and again.
+    EXPECT_FALSE(page.viewport.hasWork(false));
+    EXPECT_FALSE(page.viewport.overtaken());
     page.workUntilIdle();
     EXPECT_FALSE(page.shown.waitFor("picture", 6, "final").is_null());
+}
+
+TEST(Viewport, AfterAFailureTheOldPictureIsGivenUp) {
+    OnePage page;
+    page.viewport.ask(test::show(7, test::smallState()));
+    for (int n = 0; n < 100 && page.shown.kinds() != std::vector<std::string>{"moving", "rough"}; ++n) {
+        page.viewport.step([] {});
+        page.viewport.ask(ShownMessage{});
+    }
+    ASSERT_TRUE(page.viewport.hasWork(false));
+    page.viewport.fail("the file is broken");
+    EXPECT_FALSE(page.viewport.hasWork(false));
+    EXPECT_EQ(page.shown.kinds().size(), 2U);
+    EXPECT_EQ(page.shown.waitFor("failed")["text"], "the file is broken");
 }
 
 // The processors are the page's while it draws what moves.

@@ -21,7 +21,10 @@ bool Batch::attempt(const std::string& input, const std::function<void()>& work)
     } catch (...) {
         const Failure failure = currentFailure();
         // An option that is wrong for all is wrong for the same reason: once is enough.
-        if (failure.message != last_message_) tellError(fmt::format("{}: {}: {}\n", tool_, input, failure.message));
+        if (failure.message != last_message_)
+            tellError(failure.message.starts_with(input + ":")
+                          ? fmt::format("{}: {}\n", tool_, failure.message)
+                          : fmt::format("{}: {}: {}\n", tool_, input, failure.message));
         last_message_ = failure.message;
         worst_ = std::max(worst_, failure.status);
         failed_.push_back(input);

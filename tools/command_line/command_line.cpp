@@ -1,5 +1,6 @@
 #include "command_line.h"
 
+#include "base/json_text.h"
 #include "build_facts.h"
 #include "early_failure.h"
 #include "manual.h"
@@ -227,7 +228,7 @@ void writeStats(const CommonOptions& options, const nlohmann::ordered_json& repo
         for (const nlohmann::ordered_json& one : report) marked.push_back(mark(one));
     else
         marked = mark(report);
-    const std::string text = marked.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+    const std::string text = jsonText(marked, 2) + "\n";
     if (options.stats == "-") {
         if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0)
             throw OutputError("--stats -: standard output could not be written; is the disk full?");
@@ -252,6 +253,7 @@ void say(const CommonOptions& options, std::string_view line) {
     const std::string text = fmt::format("{}\n", line);
     std::FILE* stream = options.stats == "-" || options.output_on_stdout ? stderr : stdout;
     static_cast<void>(std::fwrite(text.data(), 1, text.size(), stream));
+    static_cast<void>(std::fflush(stream));  // in a log it stands before the warnings that follow
 }
 
 }  // namespace stratum::tools

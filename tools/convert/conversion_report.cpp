@@ -27,19 +27,20 @@ void Conversion::check(const ConversionJob& job, GridNumbers& numbers) {
 
 void Conversion::tellOutput(const voxelize::Voxelizer& voxelizer, const ConversionJob& job, const GridNumbers& grid) {
     std::error_code stream;
-    const auto bytes = fs::is_regular_file(job.path, stream) ? fs::file_size(job.path) : 0;
+    const bool on_disk = fs::is_regular_file(job.path, stream);
+    const auto bytes = on_disk ? fs::file_size(job.path) : 0;
     const exporter::GridStatistics& counted = grid.counted.statistics;
     files_.push_back({{"path", job.path.string()},
                       {"snapshot", job.label},
-                      {"bytes", bytes},
+                      {"bytes", on_disk ? nlohmann::ordered_json(bytes) : nullptr},
                       {"beads", job.beads},
                       {"active_voxels", counted.active_voxels},
                       {"leaves_evaluated", voxelizer.report().leaves_evaluated},
                       {"leaves_reused", voxelizer.report().leaves_reused}});
-    say(o_.common,
-        fmt::format("  {}: {} active voxels, {} in memory, {} on disk", job.path.string(),
-                    humanCount(static_cast<double>(counted.active_voxels)),
-                    humanBytes(static_cast<double>(counted.memory_bytes)), humanBytes(static_cast<double>(bytes))));
+    say(o_.common, fmt::format("  {}: {} active voxels, {} in memory{}", job.path.string(),
+                               humanCount(static_cast<double>(counted.active_voxels)),
+                               humanBytes(static_cast<double>(counted.memory_bytes)),
+                               on_disk ? fmt::format(", {} on disk", humanBytes(static_cast<double>(bytes))) : ""));
 }
 
 void Conversion::tellMesh(const exporter::SurfaceMesh& mesh, const openvdb::FloatGrid& grid) {

@@ -7,8 +7,8 @@
 #include "progress.h"
 
 #include "deposit/read_print.h"
+#include "export/mesh/surface_mesh.h"
 #include "export/plan/level_set_plan.h"
-#include "export/surface_mesh.h"
 #include "gcode/container/container.h"
 #include "gcode/toolpath/toolpath.h"
 #include "motion/print_times.h"

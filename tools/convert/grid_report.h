@@ -1,7 +1,7 @@
 // What --stats says of a level set and of its mesh, and whether the level set holds what was extruded.
 #pragma once
 
-#include "export/surface_mesh.h"
+#include "export/mesh/surface_mesh.h"
 #include "export/vdb_stream.h"
 #include "voxelize/beads/lattice.h"
 #include "voxelize/grid/voxelizer.h"

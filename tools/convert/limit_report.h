@@ -1,7 +1,7 @@
 // The part of reports that is about the limits of the machine: their values, and where each is from.
 #pragma once
 
-#include "gcode/machine/limit_origins.h"
+#include "gcode/printer/limit_origins.h"
 
 #include <nlohmann/json.hpp>
 

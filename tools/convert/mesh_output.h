@@ -3,7 +3,7 @@
 
 #include "convert/conversion.h"
 
-#include "export/surface_mesh.h"
+#include "export/mesh/surface_mesh.h"
 #include "gcode/toolpath/toolpath.h"
 #include "voxelize/grid/attributes.h"
 

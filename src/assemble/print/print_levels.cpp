@@ -1,7 +1,7 @@
 #include "assemble/print/print_levels.h"
 
+#include "assemble/file/file_facts.h"
 #include "assemble/print/kept_prints.h"
-#include "assemble/shape/file_facts.h"
 #include "base/checksum.h"
 #include "base/error.h"
 #include "base/stopwatch.h"

@@ -1,7 +1,7 @@
 // G-code -> the fields that rays are traced through. Voxels are computed when a ray needs them.
 #pragma once
 
-#include "assemble/read_events.h"
+#include "assemble/file/read_events.h"
 #include "ondemand/print_field.h"
 #include "shade/camera/pixel_size.h"
 #include "trace/intersector.h"

@@ -1,7 +1,7 @@
 // The attributes that shading needs, and the files that they are read from.
 #pragma once
 
-#include "assemble/object_file.h"
+#include "assemble/file/object_file.h"
 
 #include <cstddef>
 #include <set>

@@ -1,4 +1,4 @@
-#include "assemble/shape/file_facts.h"
+#include "assemble/file/file_facts.h"
 #include "assemble/shape/shape.h"
 #include "base/error.h"
 #include "base/human_text.h"

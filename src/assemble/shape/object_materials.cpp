@@ -2,6 +2,7 @@
 
 #include "shade/brdf/brdf.h"
 #include "shade/finish/line_gloss.h"
+#include "shade/finish/named_brdf.h"
 #include "shade/palette/filament_color.h"
 #include "voxelize/grid/attributes.h"
 

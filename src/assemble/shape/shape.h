@@ -1,11 +1,11 @@
 // One grid of a file, one print, or one shape by formula, ready for rays.
 #pragma once
 
-#include "assemble/object_file.h"
+#include "assemble/file/object_file.h"
 #include "assemble/print/lazy_print.h"
 #include "assemble/print/print_colors.h"
 #include "assemble/shape/attribute_needs.h"
-#include "assemble/tracing_options.h"
+#include "assemble/shape/tracing_options.h"
 #include "trace/attribute.h"
 #include "trace/intersector.h"
 

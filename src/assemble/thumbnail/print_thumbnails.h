@@ -1,7 +1,7 @@
 // Pictures of a print for gcode::ThumbnailFile.
 #pragma once
 
-#include "assemble/read_events.h"
+#include "assemble/file/read_events.h"
 #include "gcode/thumbnail/thumbnail.h"
 #include "gcode/toolpath/toolpath.h"
 #include "voxelize/grid/print_options.h"

@@ -3,7 +3,7 @@
 // Configuration.h for defaults; marlinfw.org/docs/gcode/M503.html and reports of Marlin 1.0 to 2.1 that people posted.
 #pragma once
 
-#include "gcode/machine/read_options.h"
+#include "gcode/printer/read_options.h"
 
 #include <optional>
 #include <string>

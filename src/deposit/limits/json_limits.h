@@ -2,7 +2,7 @@
 #pragma once
 
 #include "base/json_section.h"
-#include "gcode/machine/read_options.h"
+#include "gcode/printer/read_options.h"
 
 #include <string_view>
 

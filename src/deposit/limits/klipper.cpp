@@ -3,7 +3,7 @@
 #include "base/error.h"
 #include "base/text.h"
 #include "deposit/limits/printer_text.h"
-#include "gcode/machine/machine_limits.h"
+#include "gcode/printer/machine_limits.h"
 
 #include <fmt/format.h>
 #include <glob.h>

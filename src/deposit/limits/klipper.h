@@ -5,7 +5,7 @@
 // hold where the rest does not state them.
 #pragma once
 
-#include "gcode/machine/read_options.h"
+#include "gcode/printer/read_options.h"
 
 #include <map>
 #include <string>

@@ -1,7 +1,7 @@
 // The text of a printer's file, and the numbers in it.
 #pragma once
 
-#include "gcode/machine/read_options.h"
+#include "gcode/printer/read_options.h"
 
 #include <cstddef>
 #include <string>

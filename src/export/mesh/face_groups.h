@@ -1,7 +1,7 @@
 // The faces of a mesh, ordered by their materials.
 #pragma once
 
-#include "export/surface_mesh.h"
+#include "export/mesh/surface_mesh.h"
 
 #include <cstddef>
 #include <cstdint>

@@ -5,7 +5,7 @@
 #pragma once
 
 #include "export/mesh/mesh_space.h"
-#include "export/surface_mesh.h"
+#include "export/mesh/surface_mesh.h"
 
 #include <cstddef>
 #include <filesystem>

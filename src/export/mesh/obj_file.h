@@ -1,7 +1,7 @@
 // Wavefront OBJ, and the .mtl beside it. Source: M. Reddy's copies of Wavefront's "Object Files" and "MTL" appendices.
 #pragma once
 
-#include "export/surface_mesh.h"
+#include "export/mesh/surface_mesh.h"
 
 #include <filesystem>
 

@@ -125,6 +125,7 @@ constexpr std::array kSignatures{
     Signature{"\xfe\xff"sv, "is UTF-16 text; save it as UTF-8 or ASCII"},
     Signature{"\x89PNG"sv, "is a PNG picture, not G-code; give the slicer's .gcode file"},
     Signature{"\xff\xd8\xff"sv, "is a JPEG picture, not G-code; give the slicer's .gcode file"},
+    Signature{"\x20\x42\x44\x56"sv, "is an OpenVDB file, not G-code; vdbtrace draws it, and vdbview shows it"},
     Signature{"%PDF"sv, "is a PDF document, not G-code; give the slicer's .gcode file"},
     Signature{"Rar!"sv, "is a RAR archive; unpack it and give the .gcode file in it"},
     Signature{"7z\xbc\xaf"sv, "is a 7z archive; unpack it and give the .gcode file in it"},
@@ -181,7 +182,7 @@ void refuseOtherFormats(std::string_view bytes, std::string_view name) {
     const std::string_view start = bytes.substr(0, 4096);
     const auto first = start.find_first_not_of(" \t\r\n");
     if (isBinaryStl(bytes) || isTextStl(start.substr(std::min(first, start.size()))))
-        refuse("is a STL model, not G-code; slice it first");
+        refuse("is an STL model, not G-code; slice it first");
     const auto zero = bytes.substr(0, std::size_t{1} << 16).find('\0');
     if (zero == std::string_view::npos) return;
     if (isMakerBotStream(bytes))

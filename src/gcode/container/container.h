@@ -12,7 +12,7 @@
 
 #include "base/input_file.h"
 #include "gcode/container/byte_buffer.h"
-#include "gcode/slicer/package_facts.h"
+#include "gcode/container/package_facts.h"
 
 #include <cstddef>
 #include <cstdint>

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <map>
 #include <string>
 #include <system_error>
 #include <utility>
@@ -179,9 +180,17 @@ std::string unpackAside(zip_t* archive, zip_uint64_t index, std::string_view nam
 PackageFacts readMaterials(zip_t* archive, const ZipContents& contents, std::string_view name) {
     PackageFacts facts;
     if (!contents.relations) return facts;
-    for (const std::string& path : materialPaths(unpackAside(archive, *contents.relations, name)))
-        for (const auto& [entry, index] : contents.materials)
-            if (entry == path) readMaterial(unpackAside(archive, index, name), facts);
+    // Each file once, however often it is named: tools share materials.
+    std::map<std::string, Material> materials;
+    for (const std::string& path : materialPaths(unpackAside(archive, *contents.relations, name))) {
+        const auto entry = std::find_if(contents.materials.begin(), contents.materials.end(),
+                                        [&path](const auto& one) { return one.first == path; });
+        if (entry == contents.materials.end()) continue;
+        const auto [material, fresh] = materials.try_emplace(path);
+        if (fresh) material->second = readMaterial(unpackAside(archive, entry->second, name));
+        facts.stated.materials.push_back(material->second.name);
+        facts.filament_colors.push_back(material->second.color);
+    }
     return facts;
 }
 

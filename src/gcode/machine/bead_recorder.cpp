@@ -16,6 +16,7 @@ namespace {
 // What a damaged coordinate makes of a line: hundreds of thousands of voxels around next to nothing.
 constexpr double kLong = 1000;             // mm
 constexpr double kFinestSection = 3.1e-4;  // mm^2
+constexpr double kSameLevel = 0.005;       // mm; less is no other layer
 constexpr double kSameZ = 1e-6;            // mm; rounding of relative moves, far below the precision of files
 constexpr std::size_t kMostPrimeBeads = 100;
 
@@ -125,9 +126,22 @@ void BeadRecorder::markLayer(const Tag& mark) {
     if (mark.height > 0) tag({.kind = Tag::Kind::height, .height = mark.height}, 0);
     if (again) return;
     if (!same_z) ++next_.layer;
+    if (mark.raft || on_raft_ > 0) markOnRaft(mark.raft);
     mark_ = mark.text;
     mark_z_ = mark.z;
     beads_before_mark_ = toolpath_.beads.size();
+}
+
+// Cura lifts a part's first layer by an air gap, and presses the others down into it: of these two the distance to what
+// lies below is no height.
+void BeadRecorder::markOnRaft(bool raft) {
+    constexpr int kLayers = 2;
+    if (raft) {
+        on_raft_ = kLayers + 1;
+        return;
+    }
+    --on_raft_;
+    if (nominal_height_ > 0) next_.height = on_raft_ > 0 ? static_cast<float>(nominal_height_) : 0.0F;
 }
 
 void BeadRecorder::finish() {
@@ -173,8 +187,8 @@ void BeadRecorder::countLayer(const Point& from, const Point& to, bool sloped) {
         first_z_ = layer_z_ = z;
         return;
     }
-    const bool rises = sloped ? z > layer_z_ + 0.999 * nominal_height_ : z > layer_z_ + kSameZ;
-    const bool starts_over = z < layer_z_ - kSameZ && z < first_z_ + kSameZ;
+    const bool rises = z > layer_z_ + (sloped ? 0.999 * nominal_height_ : kSameLevel);
+    const bool starts_over = z < layer_z_ - kSameLevel && z < first_z_ + kSameLevel;
     if (!rises && !starts_over) return;
     ++next_.layer;
     layer_z_ = z;

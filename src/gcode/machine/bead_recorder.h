@@ -1,7 +1,7 @@
 // Converts extruding moves and slicer tags into beads, runs, arcs, layers and objects.
 #pragma once
 
-#include "gcode/machine/mixer.h"
+#include "gcode/printer/mixer.h"
 #include "gcode/slicer/slicer_tags.h"
 #include "gcode/toolpath/frame.h"
 #include "gcode/toolpath/toolpath.h"
@@ -60,6 +60,7 @@ public:
 private:
     void changeColor(std::uint8_t tool, std::optional<Rgb> color, std::uint32_t line);
     void markLayer(const Tag& tag);
+    void markOnRaft(bool raft);
     void restartLayers();
     void countLayer(const Point& from, const Point& to, bool sloped);
 
@@ -74,6 +75,7 @@ private:
     std::string_view mark_;         // the words of the last layer mark
     std::optional<double> mark_z_;  // its z, if it states one
     std::size_t beads_before_mark_ = 0;
+    int on_raft_ = 0;  // layer marks until heights are those of the levels again
     double first_z_ = 0;
     double layer_z_ = 0;
     std::unordered_map<std::string, std::uint16_t> object_index_;

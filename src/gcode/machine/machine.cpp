@@ -225,7 +225,7 @@ void Machine::executeM(const Command& command) {
         case 108:
         case 135:
             // MakerBot's machines and FlashForge's. Elsewhere these have no T.
-            if (command.hasValue('T')) useNumberedTool(command.value('T'));
+            if (command.hasValue('T')) changeMakerBotTool(command.value('T'));
             return;
         case 163:
         case 164:
@@ -267,6 +267,14 @@ void Machine::selectTool(const Command& command) {
 
 void Machine::useNumberedTool(double number) {
     if (number >= 0 && number < kNoTool) useTool(static_cast<std::size_t>(number));
+}
+
+// Some of these programs count absolute E for each tool, others for all together: the next E tells.
+void Machine::changeMakerBotTool(double number) {
+    e_by_tool_[tool_] = e_;
+    const std::size_t before = tool_;
+    useNumberedTool(number);
+    if (tool_ != before) tool_e_ = e_by_tool_[tool_];
 }
 
 void Machine::useTool(std::size_t tool) {
@@ -328,6 +336,7 @@ void Machine::setPosition(const Command& command) {
     const double value = letter != 0 && command.hasValue(letter) ? command.value(letter) * eUnit() : 0;
     if (!std::isfinite(value)) refuse("the E of this G92 is no number; is the file damaged?");
     e_ = value;
+    tool_e_.reset();
 }
 
 void Machine::setAbsolute(const Command& command) {
@@ -415,11 +424,14 @@ void Machine::labelObject(const Command& command) {
     if (text.empty()) return;
     // Copies of one model that bear one name stay apart.
     std::string name(text);
-    const auto same = [&](const auto& one) { return one.first != object_number_ && one.second == name; };
-    if (object_number_ >= 0 && std::any_of(object_names_.begin(), object_names_.end(), same))
-        name += fmt::format(" {}", object_number_);
+    if (object_number_ >= 0) {
+        std::string& own = object_names_[object_number_];
+        if (const auto old = name_uses_.find(own); old != name_uses_.end() && --old->second == 0) name_uses_.erase(old);
+        if (name_uses_.contains(name)) name += fmt::format(" {}", object_number_);
+        ++name_uses_[name];
+        own = name;
+    }
     recorder_.renameObject(name, line_);
-    if (object_number_ >= 0) object_names_.insert_or_assign(object_number_, std::move(name));
 }
 
 bool Machine::filamentKnown() const {

@@ -11,9 +11,9 @@
 #include "gcode/machine/belt.h"
 #include "gcode/machine/carriages.h"
 #include "gcode/machine/extra_axes.h"
-#include "gcode/machine/mixer.h"
 #include "gcode/machine/motion_recorder.h"
-#include "gcode/machine/read_options.h"
+#include "gcode/printer/mixer.h"
+#include "gcode/printer/read_options.h"
 #include "gcode/slicer/settings.h"
 #include "gcode/text/lexer.h"
 #include "gcode/toolpath/arc.h"
@@ -21,11 +21,13 @@
 #include "gcode/toolpath/warning_log.h"
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <map>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <unordered_map>
 #include <vector>
 
 namespace stratum::gcode {
@@ -87,6 +89,7 @@ private:
     void executeMacro(const Command& command);
     void selectTool(const Command& command);
     void useNumberedTool(double number);
+    void changeMakerBotTool(double number);
     void useTool(std::size_t tool);
     void heed(const Tag& tag, const Line& line);
     /// All filament that was drawn back is at the nozzle again.
@@ -176,8 +179,10 @@ private:
     Frame frame_;
     Plane plane_;
     double e_ = 0;
-    double unit_ = 1;  // mm in one unit of the program
-    int motion_ = 0;   // the G0..G3 or G5 in force, for lines without a command
+    std::array<double, 256> e_by_tool_{};  // when MakerBot's commands changed it
+    std::optional<double> tool_e_;         // of the tool since then, until an E tells whether it counts
+    double unit_ = 1;                      // mm in one unit of the program
+    int motion_ = 0;                       // the G0..G3 or G5 in force, for lines without a command
     bool absolute_ = true;
     bool e_absolute_ = true;
     bool e_mode_known_ = false;    // from M82, M83, an option, or an assumption
@@ -205,10 +210,11 @@ private:
     std::map<std::string, Saved, std::less<>> saved_;
     std::map<int, Stored> stored_;  // by slot
     bool objects_by_comment_ = false;
-    int object_number_ = -1;                   // of the current object by M486; -1: none
-    std::map<int, std::string> object_names_;  // by number, as M486 A has named them
-    MotionRecorder* moves_ = nullptr;          // nullptr: motion is not recorded
-    double drive_per_extrusion_ = 0;           // of the current move: movement of E over extrusion at the nozzle
+    int object_number_ = -1;                                  // of the current object by M486; -1: none
+    std::map<int, std::string> object_names_;                 // by number, as M486 A has named them
+    std::unordered_map<std::string, std::size_t> name_uses_;  // how many of them have it
+    MotionRecorder* moves_ = nullptr;                         // nullptr: motion is not recorded
+    double drive_per_extrusion_ = 0;  // of the current move: movement of E over extrusion at the nozzle
 
     MoveCounts counts_;
     double filament_mm_ = 0;

@@ -64,6 +64,10 @@ double Machine::takeExtrusion(const Command& command) {
     if (letter == 0 || !command.hasValue(letter)) return 0;
     if (!e_mode_known_) assumeExtruderMode();
     const double value = command.value(letter) * eUnit();
+    if (tool_e_) {
+        if (e_absolute_ && std::abs(value - *tool_e_) <= std::abs(value - e_)) e_ = *tool_e_;
+        tool_e_.reset();
+    }
     const double extrusion = e_absolute_ ? value - e_ : value;
     if (!(std::abs(extrusion) <= kMaxExtrusion))
         refuse(fmt::format("{}{} is no extrusion (limit {} in one move); is the file damaged?", letter,
@@ -311,13 +315,22 @@ double Machine::extrudedOf(double drive, bool in_place) {
         if (drawn_back > kUnloaded) unloaded = true;
         return drive;
     }
-    if (!unloaded) {
-        drawn_back = in_place ? std::max(0.0, drawn_back - mm) : 0;
+    if (!unloaded && in_place) {
+        drawn_back = std::max(0.0, drawn_back - mm);
         return drive;
     }
+    // A retraction that is taken back in part, or on the way, comes first ("extra restart distance" below 0 of
+    // Simplify3D, Slic3r 0.9). What is drawn back farther is brought back by macros that the file does not show.
+    constexpr double kMostOwed = 10;    // mm
+    constexpr double kRounding = 2e-3;  // mm, of a file's numbers
+    if (!unloaded && (drawn_back < kRounding || drawn_back > kMostOwed)) drawn_back = 0;
     const double fetched = std::min(drawn_back, mm);
+    if (unloaded && !in_place && fetched > 0 && !settings_.shared_nozzle)
+        warn(
+            "E has fallen back by more than 25 mm: what follows brings the filament back, and lays nothing until "
+            "then; is a G92 E0 missing?");
     drawn_back -= fetched;
-    unloaded = drawn_back > 0;
+    unloaded = unloaded && drawn_back > 0;
     return drive * (1 - fetched / mm);
 }
 

@@ -5,8 +5,8 @@
 // G28 in its estimate.
 #pragma once
 
-#include "gcode/machine/machine_limits.h"
-#include "gcode/machine/motion.h"
+#include "gcode/printer/machine_limits.h"
+#include "gcode/printer/motion.h"
 #include "gcode/text/lexer.h"
 #include "gcode/toolpath/frame.h"
 #include "gcode/toolpath/warning_log.h"

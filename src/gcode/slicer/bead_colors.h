@@ -4,7 +4,7 @@
 // Sources: PrusaSlicer, OrcaSlicer and BambuStudio ("; filament_colour =", ";COLOR_CHANGE,T0,#RRGGBB").
 #pragma once
 
-#include "gcode/machine/mixer.h"
+#include "gcode/printer/mixer.h"
 #include "gcode/toolpath/toolpath.h"
 
 #include <cstddef>

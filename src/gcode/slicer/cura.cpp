@@ -3,7 +3,7 @@
 #include "base/base64.h"
 #include "base/text.h"
 #include "gcode/container/gzip.h"
-#include "gcode/machine/machine_limits.h"
+#include "gcode/printer/machine_limits.h"
 #include "gcode/text/setting_text.h"
 
 #include <algorithm>

@@ -5,7 +5,7 @@
 // \f the texts of start and end programs).
 #pragma once
 
-#include "gcode/machine/motion.h"
+#include "gcode/printer/motion.h"
 
 #include <optional>
 #include <string>

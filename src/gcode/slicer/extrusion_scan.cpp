@@ -72,13 +72,14 @@ public:
 
     ExtrusionScan result() const {
         using Drive = ExtrusionScan::Drive;
-        if (!e_) return {.drive = ab_ ? Drive::axes_ab : switch_ ? Drive::switched : Drive::e_word};
+        if (!e_) return {.drive = ab_ && !spindle_ ? Drive::axes_ab : switch_ ? Drive::switched : Drive::e_word};
         return {.falls_back = changes_.areIncrements(), .mode_follows = mode_follows_, .repeats = changes_.repeat()};
     }
 
 private:
     bool miscellaneous(int code) {
         if (code == 101) switch_ = true;
+        if (code == 3 || code == 4) spindle_ = true;
         if (code == 82 || code == 83) {
             mode_ = true;
             mode_follows_ = e_;
@@ -98,6 +99,7 @@ private:
     bool mode_follows_ = false;
     bool switch_ = false;
     bool ab_ = false;
+    bool spindle_ = false;  // then A and B turn what is milled
     bool e_ = false;
     Changes changes_;
 };

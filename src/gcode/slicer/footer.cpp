@@ -19,7 +19,8 @@ struct Unit {
     std::string_view name;
     double scale;  // to mm or mm^3
 };
-constexpr std::array kLengths{Unit{"mm", 1}, Unit{"cm", 10}, Unit{"m", 1000}};
+constexpr std::array kLengths{Unit{"mm", 1}, Unit{"cm", 10}, Unit{"m", 1000},
+                              Unit{"meter", 1000}};  // the last is REALvision's
 constexpr std::array kVolumes{Unit{"mm3", 1}, Unit{"mm^3", 1}, Unit{"cm3", 1000}, Unit{"cm^3", 1000}};
 
 // The letters and digits that a text begins with, after blanks.
@@ -58,7 +59,21 @@ std::size_t takeIndex(std::string_view& text) {
 
 void setLengths(std::string_view text, double scale, Footer& footer) {
     if (auto list = amounts(text, scale, kLengths); !list.empty())
-        footer = {.length = std::move(list), .volume = {}, .flow = {}};
+        footer = {.length = std::move(list), .volume = {}, .flow = {}, .a_line_each = false};
+}
+
+// Slic3r up to 1.2.9: "277.2mm (1.8cm3)", a line for each tool. Slic3r PE 1.42 states grams by the same words, without
+// a unit; so does MatterSlice its mm, but alone.
+void addLine(std::string_view text, Footer& footer) {
+    const std::vector<double> list = amounts(text, 1, kLengths);
+    const bool bare = amounts(text, 0, kLengths) != list;
+    if (bare && footer.a_line_each) return;
+    if (list.size() != 1 || bare || !footer.a_line_each) {
+        setLengths(text, 1, footer);
+        footer.a_line_each = list.size() == 1 && !bare;
+    } else if (footer.length.size() < kMostTools) {
+        footer.length.push_back(list[0]);
+    }
 }
 
 void setAt(std::vector<double>& list, std::size_t tool, std::string_view text, std::span<const Unit> units) {
@@ -71,8 +86,12 @@ void setAt(std::vector<double>& list, std::size_t tool, std::string_view text, s
 }  // namespace
 
 bool readFooter(std::string_view text, Footer& footer) {
-    if (takePrefix(text, "filament used [mm] =") || takePrefix(text, "filament used =") ||
-        takePrefix(text, "Filament length:") || takePrefix(text, "--- filament used:")) {
+    if (takePrefix(text, "filament used =")) {
+        addLine(text, footer);
+        return true;
+    }
+    if (takePrefix(text, "filament used [mm] =") || takePrefix(text, "Filament length:") ||
+        takePrefix(text, "--- filament used:") || takePrefix(text, "FilamentUsed:")) {  // the last is WEEDO's
         setLengths(text, 1, footer);
         return true;
     }
@@ -80,14 +99,17 @@ bool readFooter(std::string_view text, Footer& footer) {
         if (text.find("mm3") == std::string_view::npos)
             setLengths(text, 1000, footer);
         else
-            footer = {.length = {}, .volume = amounts(text, 1, kVolumes), .flow = {}};
+            footer = {.length = {}, .volume = amounts(text, 1, kVolumes), .flow = {}, .a_line_each = false};
         return true;
     }
     if (takePrefix(text,
                    "total filament length [mm] :")) {  // BambuStudio lists those in use, so that the sum alone is sure
         const std::vector<double> list = amounts(text, 1, kLengths);
         if (!list.empty())
-            footer = {.length = {std::accumulate(list.begin(), list.end(), 0.0)}, .volume = {}, .flow = {}};
+            footer = {.length = {std::accumulate(list.begin(), list.end(), 0.0)},
+                      .volume = {},
+                      .flow = {},
+                      .a_line_each = false};
         return true;
     }
     if (takePrefix(text, "filament_length_m =")) {  // Slic3r 1.3.1

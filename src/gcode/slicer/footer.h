@@ -17,6 +17,8 @@ struct Footer {
     std::vector<double> volume;  ///< mm^3
     std::vector<double> flow;    ///< by tool: what lengths are multiplied by beside E; 0 or short: nothing
 
+    bool a_line_each = false;  ///< the last statement was of one tool, and the next one is of the next
+
     bool empty() const { return length.empty() && volume.empty(); }
 };
 

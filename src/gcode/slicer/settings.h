@@ -5,7 +5,7 @@
 // (extruder_colour, filament_colour where that is empty), Plater.cpp of OrcaSlicer and BambuStudio (filament_colour).
 #pragma once
 
-#include "gcode/machine/machine_limits.h"
+#include "gcode/printer/machine_limits.h"
 #include "gcode/slicer/extrusion_scan.h"
 #include "gcode/slicer/footer.h"
 #include "gcode/toolpath/color.h"

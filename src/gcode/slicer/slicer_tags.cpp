@@ -84,7 +84,12 @@ Tag ofPath(std::string_view text) {
 
 // Skeinforge: "<layer> 0.36 ", the number being the middle of the layer; IceSL: "<layer 3>".
 Tag ofMarkup(std::string_view text) {
-    if (text.starts_with("<layer>") || text.starts_with("<layer ")) return layerChange("<layer");
+    if (text.starts_with("<layer>") || text.starts_with("<layer ")) {
+        Tag tag = layerChange("<layer");
+        // Of two tools each announces the layer.
+        if (take(text, "<layer>")) tag.z = positive(text, kMaxCoordinate);
+        return tag;
+    }
     if (text.starts_with("<edge>") || text.starts_with("<perimeter>") || text.starts_with("<perimeterPath>"))
         return {.kind = Tag::Kind::feature, .feature = Feature::external_perimeter};
     if (text.starts_with("<loop>")) return {.kind = Tag::Kind::feature, .feature = Feature::perimeter};
@@ -151,7 +156,11 @@ Tag parseTag(std::string_view comment) {
         case 'L':
             if (take(text, "LAYER_CHANGE")) return layerChange("LAYER_CHANGE");
             if (take(text, "LAYER_HEIGHT:")) return ofHeight(text);
-            if (take(text, "LAYER:")) return layerChange("LAYER:");
+            if (take(text, "LAYER:")) {
+                Tag tag = layerChange("LAYER:");
+                tag.raft = text.starts_with('-');
+                return tag;
+            }
             break;
         case 'C':
             if (take(text, "CHANGE_LAYER")) return layerChange("CHANGE_LAYER");

@@ -67,7 +67,7 @@ private:
 
 /// One line of the source. Views point into the bytes given to the Lexer.
 struct Line {
-    static constexpr std::size_t kMaxCommands = 4;
+    static constexpr std::size_t kMaxCommands = 16;
     std::uint32_t number = 0;  ///< 1-based
     std::size_t count = 0;     ///< commands used
     std::array<Command, kMaxCommands> commands;

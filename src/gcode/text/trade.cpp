@@ -19,6 +19,7 @@ struct Signs {
     std::size_t mills = 0;    // drilling cycles, lengths and changes of cutters
     std::size_t pens = 0;     // servos
     std::size_t plunges = 0;  // moves below z = 0
+    std::size_t tool_changes = 0, heats = 0;
     bool says_laser = false;
     bool says_pen = false;
 };
@@ -35,7 +36,8 @@ void addWords(std::string_view comment, Signs& signs) {
 void addCommand(const Command& command, Signs& signs) {
     if (command.letter == 'M') {
         if (command.code == 3 || command.code == 4) ++signs.starts;
-        if (command.code == 6) ++signs.mills;
+        if (command.code == 6) ++signs.tool_changes;
+        if (command.code == 104 || command.code == 109 || command.code == 140) ++signs.heats;
         if (command.code == 280) ++signs.pens;
     } else if (command.letter == 'G') {
         if (command.code == 43 || (command.code >= 81 && command.code <= 89)) ++signs.mills;
@@ -48,7 +50,7 @@ void addCommand(const Command& command, Signs& signs) {
 
 // "{first_layer_temperature[0]}" or "[layer_num]" in a line's commands; empty if there is none.
 std::string_view placeholderIn(std::string_view line) {
-    line = line.substr(0, line.find(';'));
+    line = line.substr(0, line.find_first_of(";("));
     const auto open = line.find_first_of("{[");
     if (open == std::string_view::npos || open + 1 == line.size() || !isLetter(line[open + 1])) return {};
     const auto close = line.find(line[open] == '{' ? '}' : ']', open);
@@ -80,7 +82,8 @@ std::string describeTrade(std::string_view bytes) {
         if (!line.comment.empty()) addWords(line.comment, signs);
         for (std::size_t i = 0; i < line.count; ++i) addCommand(line.commands[i], signs);
     }
-    const bool plunges = signs.mills > 0 || signs.plunges > 0;
+    // MakerBot's M6 waits for a tool to be hot.
+    const bool plunges = signs.mills > 0 || signs.plunges > 0 || (signs.tool_changes > 0 && signs.heats == 0);
     if (signs.says_laser || (signs.burns > 0 && signs.starts > 0 && !plunges)) return "a program for a laser";
     if (signs.says_pen || signs.pens > 0) return "a program for a pen plotter";
     if (plunges) return "a program for a mill or router (CNC)";

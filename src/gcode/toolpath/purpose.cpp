@@ -1,14 +1,16 @@
 #include "gcode/toolpath/purpose.h"
 
+#include "base/union_find.h"
+#include "gcode/toolpath/plan_path.h"
+
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <iterator>
 #include <map>
-#include <numeric>
 #include <unordered_map>
 #include <utility>
-#include "gcode/toolpath/plan_path.h"
+#include <vector>
 
 namespace stratum::gcode {
 namespace {
@@ -18,6 +20,7 @@ constexpr double kMostCell = 2;     // mm; a wider line is a damaged number, or 
 constexpr int kPrimeCells = 4;      // that prime lines are wide at most
 constexpr int kBrimCells = 3;       // that a brim is wide at least
 constexpr double kCrossing = 0.05;  // of a brim's length
+constexpr double kMostSteps = 2e7;  // along the lines near the bed; a bed of a square metre has 2e6 in a layer
 constexpr double kThread = 0.1;     // of the usual width: thinner lines are threads of a move that extrudes
 
 Purpose ofTag(Feature feature) {
@@ -72,7 +75,7 @@ public:
             else
                 beads_.push_back(bead);
         }
-        if (beads_.empty()) return;
+        if (beads_.empty() || steps() > kMostSteps) return;
         findIslands();
         const bool any_goes_on =
             std::any_of(islands_.begin(), islands_.end(), [](const auto& island) { return island.second.goes_on; });
@@ -128,12 +131,21 @@ private:
         above_ = skirt_ + height;
     }
 
+    int stepsAlong(std::uint32_t index) const {
+        const double length = std::min(beadLength(toolpath_, toolpath_.beads[index]), 1e5);
+        return std::max(1, static_cast<int>(std::ceil(length / (0.5 * cell_))));
+    }
+    double steps() const {
+        double sum = 0;
+        for (const std::uint32_t bead : beads_) sum += stepsAlong(bead);
+        return sum;
+    }
+
     // Calls visit() for the cells along a bead.
     template <typename Visit>
     void alongBead(std::uint32_t index, const Visit& visit) const {
         const PlanPath path(toolpath_, toolpath_.beads[index]);
-        const double length = std::min(beadLength(toolpath_, toolpath_.beads[index]), 1e5);
-        const int steps = std::max(1, static_cast<int>(std::ceil(length / (0.5 * cell_))));
+        const int steps = stepsAlong(index);
         PlanCell last;
         for (int n = 0; n <= steps; ++n) {
             const PlanPoint place = path.at(path.length() * n / steps);
@@ -145,27 +157,19 @@ private:
     }
 
     void findIslands() {
-        std::vector<std::uint32_t> leader(beads_.size());
-        std::iota(leader.begin(), leader.end(), 0U);
-        const auto find = [&leader](std::uint32_t n) {
-            while (leader[n] != n) n = leader[n] = leader[leader[n]];
-            return n;
-        };
+        UnionFind sets(beads_.size());
         PlanCells cells;
         for (std::uint32_t n = 0; n < beads_.size(); ++n)
             alongBead(beads_[n], [&](PlanCell cell) {
                 for (int di = -1; di <= 1; ++di)
                     for (int dj = -1; dj <= 1; ++dj) {
                         const auto found = cells.find(cell.beside(di, dj).key());
-                        if (found == cells.end()) continue;
-                        const std::uint32_t a = find(found->second);
-                        const std::uint32_t b = find(n);
-                        leader[std::max(a, b)] = std::min(a, b);
+                        if (found != cells.end()) sets.join(found->second, n);
                     }
                 cells.emplace(cell.key(), n);
             });
         for (std::uint32_t n = 0; n < beads_.size(); ++n) {
-            Island& island = islands_[find(n)];
+            Island& island = islands_[sets.find(n)];
             island.beads.push_back(beads_[n]);
             island.top = std::max(island.top, topOf(beads_[n]));
             island.unknown = island.unknown && isUnknown(beads_[n]);

@@ -32,8 +32,10 @@ class Grid {
 public:
     // The rise of a nozzle at (x, y, z), after `path` mm, above the material below; 0 if there is none. Marks the cell.
     double visit(double x, double y, double z, double path) {
-        Cell& cell =
+        Cell* const known =
             cellAt(static_cast<std::int64_t>(std::floor(x / kCell)), static_cast<std::int64_t>(std::floor(y / kCell)));
+        if (known == nullptr) return 0;
+        Cell& cell = *known;
         const auto level = static_cast<float>(z);
         const double above = z - static_cast<double>(cell.top);
         const bool same = path - cell.visited < kSamePass || std::abs(above) < kLeastRise;
@@ -60,15 +62,19 @@ private:
     static constexpr int kShift = 2;
     static constexpr std::int64_t kEdge = 1 << kShift;
     using Square = std::array<Cell, std::size_t{kEdge} * kEdge>;
+    static constexpr std::size_t kMostSquares = std::size_t{1} << 20;  // 16 m^2: a bound for damaged files
 
-    Cell& cellAt(std::int64_t i, std::int64_t j) {
+    // Null beyond that.
+    Cell* cellAt(std::int64_t i, std::int64_t j) {
         const auto part = [](std::int64_t n) { return static_cast<std::uint64_t>((n >> kShift) + (1LL << 31)); };
         const std::uint64_t key = part(i) << 32U | part(j);
         if (last_ == nullptr || key != last_key_) {
-            last_ = &squares_[key];
+            const auto found = squares_.find(key);
+            if (found == squares_.end() && squares_.size() >= kMostSquares) return nullptr;
+            last_ = found != squares_.end() ? &found->second : &squares_[key];
             last_key_ = key;
         }
-        return (*last_)[static_cast<std::size_t>(i & (kEdge - 1)) * kEdge + static_cast<std::size_t>(j & (kEdge - 1))];
+        return &(*last_)[static_cast<std::size_t>(i & (kEdge - 1)) * kEdge + static_cast<std::size_t>(j & (kEdge - 1))];
     }
 
     std::unordered_map<std::uint64_t, Square> squares_;
@@ -219,6 +225,13 @@ void correctByPlace(const Toolpath& toolpath, std::span<const double> run_z, std
         else if (spiral > 0)
             heights[k] = nearNominal(spiral, nominal);
     }
+    // Moves without a Z in the middle of it belong to it.
+    std::vector<double> length(toolpath.runs.size());
+    for (const Bead& bead : toolpath.beads) length[bead.run] += beadLength(toolpath, bead);
+    const auto slopes = [&](std::size_t k) { return wanted[k] && std::isnan(run_z[k]); };
+    for (std::size_t k = 1; k + 1 < heights.size(); ++k)
+        if (wanted[k] && !slopes(k) && slopes(k - 1) && slopes(k + 1) && length[k] < kSamePass && heights[k - 1] > 0)
+            heights[k] = heights[k - 1];
 }
 
 // Bridging threads and ironing are round in any layer: their height follows from their own area.
@@ -248,6 +261,7 @@ void recountSpiral(Toolpath& toolpath, std::span<const double> run_z, const std:
         top[bead.run] = std::max(bead.z0, bead.z1);
         if (isStrut(bead)) strut[bead.run] = true;
     }
+    const auto most = static_cast<double>(toolpath.beads.size());  // a turn has a bead at least
     double layer = 0;
     double before = 0;
     for (std::size_t k = 0; k < toolpath.runs.size(); ++k) {
@@ -256,8 +270,8 @@ void recountSpiral(Toolpath& toolpath, std::span<const double> run_z, const std:
         if (!std::isnan(run_z[k])) {
             layer = std::max(layer, static_cast<double>(run.layer));
         } else if (before > 0 && heights[k] > 0) {
-            layer += (top[k] - before) / heights[k];
-            run.layer = static_cast<std::uint32_t>(std::clamp(std::ceil(layer - 0.05), 1.0, 1e9));
+            layer = std::min(layer + (top[k] - before) / heights[k], most);
+            run.layer = static_cast<std::uint32_t>(std::clamp(std::ceil(layer - 0.05), 1.0, most));
         }
         before = top[k];
     }
@@ -329,11 +343,13 @@ namespace {
 
 constexpr double kMostHeights = 100;  // a bead wider than this many heights is a mistake
 constexpr double kBlobHeights = 10;
+constexpr double kMostIroned = 2;  // mm; layers that are pressed into a top are as thin as a hundredth of that
 constexpr double kBlobLengths = 4;
 
 double widthOf(const Toolpath& toolpath, const Bead& bead, double area, double height, WarningLog& warnings) {
     const double width = sectionWidth(area, height);
     if (width <= kBlobHeights * height) return width;
+    if (toolpath.runOf(bead).feature == Feature::ironing && width <= kMostIroned) return width;
     const double length = beadLength(toolpath, bead);
     if (width > kBlobLengths * length) {
         warnings.add("blob: far more material than a bead of this length holds; drawn as a disc of that volume",

@@ -65,31 +65,55 @@ std::optional<std::size_t> takeTool(std::string_view& text, std::string_view pre
 
 }  // namespace
 
+namespace {
+
+// "1:56:46": hours, minutes, seconds.
+std::optional<double> clockTime(std::string_view text) {
+    double total = 0;
+    std::size_t parts = 0;
+    for (const std::string_view part : partsOf(text, ":")) {
+        if (part.empty() || part.size() > 5 || part.find_first_not_of("0123456789") != std::string_view::npos ||
+            ++parts > 3)
+            return std::nullopt;
+        double value = 0;
+        for (const char digit : part) value = 10 * value + (digit - '0');
+        if (parts > 1 && value >= 60) return std::nullopt;
+        total = 60 * total + value;
+    }
+    return parts == 3 ? std::optional(total) : std::nullopt;
+}
+
+}  // namespace
+
 std::optional<double> parseDuration(std::string_view text) {
     constexpr std::array kUnits{std::pair{'d', 86400.0}, std::pair{'h', 3600.0}, std::pair{'m', 60.0},
                                 std::pair{'s', 1.0}};
     text = trimQuoted(text);
+    if (const auto clock = clockTime(text)) return clock;
     double total = 0;
     bool any = false;
     bool units = false;  // so that what follows may be prose; a date begins with a number too
+    const auto bounded = [&total](bool known) {
+        return known && total <= kLongest ? std::optional(total) : std::nullopt;
+    };
     while (!text.empty()) {
         const char* p = text.data();
         const char* const end = p + text.size();
         double value = 0;
-        if (!parseNumber(p, end, value) || value < 0) return units ? std::optional(total) : std::nullopt;
+        if (!parseNumber(p, end, value) || value < 0) return bounded(units);
         text.remove_prefix(static_cast<std::size_t>(p - text.data()));
         text.remove_prefix(std::min(text.find_first_not_of(' '), text.size()));
         const auto word = static_cast<std::size_t>(std::find_if_not(text.begin(), text.end(), isLetter) - text.begin());
         const auto* unit = std::find_if(kUnits.begin(), kUnits.end(),
                                         [&](const auto& one) { return word > 0 && (text[0] | 0x20) == one.first; });
-        if (unit == kUnits.end() && (any || word > 0)) return units ? std::optional(total) : std::nullopt;
+        if (unit == kUnits.end() && (any || word > 0)) return bounded(units);
         total += value * (unit == kUnits.end() ? 1 : unit->second);
         any = true;
         units = units || word > 0;
         text.remove_prefix(word);
         text.remove_prefix(std::min(text.find_first_not_of(" :,"), text.size()));
     }
-    return any && total <= kLongest ? std::optional(total) : std::nullopt;
+    return bounded(any);
 }
 
 std::string describeDuration(double seconds) {
@@ -121,7 +145,8 @@ void StatedReader::comment(std::string_view text) {
 }
 
 void StatedReader::pair(std::string_view key, std::string_view value) {
-    if (key == "estimated printing time (normal mode)" || key == "estimated printing time") {
+    if (key == "estimated printing time (normal mode)" || key == "estimated printing time" ||
+        key == "total print time (s)") {  // the last is MatterSlice's
         if (const auto time = parseDuration(value)) facts_.seconds = time;
     } else if (key == "total filament used [g]") {
         if (const auto grams = sum(value)) {
@@ -152,10 +177,11 @@ void StatedReader::pair(std::string_view key, std::string_view value) {
         if (!value.empty()) facts_.printer = value;
     } else if (key == "printer_settings_id") {
         profile_ = value;
-    } else if (key == "layer_height" || key == "sliceHeight" || key == "layer_thickness_mm") {
+    } else if (key == "layer_height" || key == "sliceHeight" || key == "layer_thickness_mm" ||
+               key == "layerThickness") {
         if (const auto height = positiveNumber(value, 100)) facts_.layer_height = height;
     } else if (key == "first_layer_height" || key == "initial_layer_print_height" || key == "firstSliceHeight" ||
-               key == "first_layer_thickness_mm") {
+               key == "first_layer_thickness_mm" || key == "firstLayerThickness") {
         const bool share = value.ends_with('%');
         const auto height = positiveNumber(value, share ? 1000 : 100);
         if (share && height) first_share_ = *height / 100;

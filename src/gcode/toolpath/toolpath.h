@@ -5,8 +5,8 @@
 // Sources: Marlin G0-G3 (marlinfw.org/docs/gcode), Slic3r's flow math for the stadium cross-section.
 #pragma once
 
-#include "gcode/container/packed_double.h"
 #include "gcode/toolpath/color.h"
+#include "gcode/toolpath/packed_double.h"
 #include "gcode/toolpath/stated.h"
 
 #include <algorithm>

@@ -35,6 +35,7 @@ std::optional<py::object> Keywords::find(std::string_view name) {
     if (!given_.contains(key)) return std::nullopt;
     py::object value = given_[key];
     if (value.is_none()) return std::nullopt;
+    found_.emplace_back(name);
     return value;
 }
 

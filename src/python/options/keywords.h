@@ -50,6 +50,8 @@ public:
         refuseChoice(name, *given, names);
     }
 
+    /// Names of the values that were found until now, in that order.
+    const std::vector<std::string>& found() const { return found_; }
     /// Throws TypeError for names that nobody asked for, with the known one that is most like it.
     void finish() const;
     const std::string& function() const { return function_; }
@@ -62,7 +64,7 @@ private:
 
     std::string function_;
     const pybind11::kwargs& given_;
-    std::vector<std::string> known_;
+    std::vector<std::string> known_, found_;
 };
 
 /// Sets a value that is given.

@@ -146,9 +146,16 @@ void readTracing(Keywords& options, RenderCall& call) {
     assign(call.file_up, options.text("file_up"));
     if (!call.file_up.empty() && call.file_up != "y" && call.file_up != "z")
         throw UsageError(fmt::format("render(): file_up={}: expected y or z", call.file_up));
+    auto sinceLast = [&options, first = options.found().size()]() mutable {
+        const std::size_t begin = std::exchange(first, options.found().size());
+        return std::vector<std::string>(options.found().begin() + static_cast<std::ptrdiff_t>(begin),
+                                        options.found().end());
+    };
     tracing.prints.print = printOptionsOf(options, true);
-    tracing.prints.print.read = readOptionsOf(options);
     assign(tracing.prints.printed, options.text("printed"));
+    call.of_prints = sinceLast();
+    tracing.prints.print.read = readOptionsOf(options);
+    call.of_reading = sinceLast();
 }
 
 }  // namespace

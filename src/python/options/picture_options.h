@@ -21,6 +21,8 @@ struct RenderCall {
     std::string grid, file_up;       ///< of a .vdb
     /// Of a print that is read here, by tool; empty: as its file states.
     std::vector<std::optional<gcode::Rgb>> tool_colors;
+    std::vector<std::string> of_prints,
+        of_reading;  ///< names of options that are given: of G-code alone; of its reading
 };
 
 /// As vdbtrace's options of those names. Throws UsageError.

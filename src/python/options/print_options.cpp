@@ -5,8 +5,8 @@
 #include "deposit/printer.h"
 #include "deposit/sag.h"
 #include "gcode/machine/belt.h"
-#include "gcode/machine/machine_limits.h"
 #include "gcode/option_names.h"
+#include "gcode/printer/machine_limits.h"
 #include "gcode/slicer/settings.h"
 
 #include <fmt/format.h>

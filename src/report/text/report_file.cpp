@@ -2,6 +2,7 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "base/json_text.h"
 
 #include <fmt/format.h>
 
@@ -23,7 +24,7 @@ void writeReport(const PrintReport& report, const std::filesystem::path& path) {
     if (!isReportPath(path))
         throw UsageError(fmt::format("--report {}: the name must end in .json, .md or .html", path.string()));
     const std::string ending = endingOf(path);
-    const std::string text = ending == ".json" ? toJson(report).dump(1) + "\n"
+    const std::string text = ending == ".json" ? jsonText(toJson(report), 1) + "\n"
                              : ending == ".md" ? reportMarkdown(report)
                                                : reportPage(report);
     AtomicFile file(path);

@@ -100,4 +100,8 @@ private:
     Color radiance_;
 };
 
+/// Whether the text of --env names a light that needs no file: studio, sky, constant, alone or with numbers. They have
+/// priority over files of the same name; such a file is given as ./NAME.
+bool isEnvironmentPreset(std::string_view text);
+
 }  // namespace stratum::shade

@@ -1,13 +1,18 @@
 #include "shade/environment/hdr_reader.h"
 
 #include "base/error.h"
+#include "shade/primaries.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
+#include <cmath>
 #include <cstring>
 #include <memory>
+#include <optional>
+#include <span>
 
 #define STB_IMAGE_IMPLEMENTATION
 #define STB_IMAGE_STATIC
@@ -51,12 +56,44 @@ struct Feed {
 };
 
 struct Header {
-    double exposure = 1.0;  // texels were multiplied by this
+    glm::dvec3 exposure{1.0};  // texels were multiplied by this
+    Primaries primaries;
     std::string_view size;  // the resolution line
 };
 
+/// As many numbers as there is room for, with spaces between. Throws InputError with `what` it is of which line.
+void readNumbers(std::string_view text, std::span<double> numbers, std::string_view what, std::string_view line) {
+    for (double& number : numbers) {
+        while (text.starts_with(' ')) text.remove_prefix(1);
+        const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+        if (error != std::errc() || !std::isfinite(number)) throw InputError(fmt::format("{} is {}", line, what));
+        text.remove_prefix(static_cast<std::size_t>(stop - text.data()));
+    }
+}
+
+/// Takes one line of it.
+void readLine(std::string_view line, std::string_view place, Header& header) {
+    const auto rest = [&line](std::string_view key) {
+        return line.starts_with(key) ? std::optional(line.substr(key.size())) : std::nullopt;
+    };
+    const std::string said = fmt::format("{}: {}", place, line.substr(0, 200));
+    std::array<double, 8> n{};
+    if (const auto text = rest("EXPOSURE=")) {
+        readNumbers(*text, std::span(n).first(1), "no positive number", said);
+        if (!(n[0] > 0.0)) throw InputError(fmt::format("{} is no positive number", said));
+        header.exposure *= n[0];
+    } else if (const auto correction = rest("COLORCORR=")) {
+        readNumbers(*correction, std::span(n).first(3), "no three positive numbers", said);
+        if (!(n[0] > 0.0 && n[1] > 0.0 && n[2] > 0.0))
+            throw InputError(fmt::format("{} is no three positive numbers", said));
+        header.exposure *= glm::dvec3(n[0], n[1], n[2]);
+    } else if (const auto primaries = rest("PRIMARIES=")) {
+        readNumbers(*primaries, n, "no eight numbers", said);
+        header.primaries = {{n[0], n[1]}, {n[2], n[3]}, {n[4], n[5]}, {n[6], n[7]}};
+    }
+}
+
 Header readHeader(std::string_view bytes, std::string_view name) {
-    constexpr std::string_view kExposure = "EXPOSURE=";
     Header header;
     int line_number = 0;
     for (;;) {
@@ -68,14 +105,7 @@ Header readHeader(std::string_view bytes, std::string_view name) {
         std::string_view line = bytes.substr(0, end);
         bytes.remove_prefix(end + 1);
         if (line.empty()) break;
-        if (!line.starts_with(kExposure)) continue;
-        line.remove_prefix(kExposure.size());
-        while (line.starts_with(' ')) line.remove_prefix(1);
-        double value = 0.0;
-        const auto [stop, error] = std::from_chars(line.data(), line.data() + line.size(), value);
-        if (error != std::errc() || !(value > 0.0) || stop == line.data())
-            throw InputError(fmt::format("{}: line {}: EXPOSURE={} is no positive number", name, line_number, line));
-        header.exposure *= value;
+        readLine(line, fmt::format("{}: line {}", name, line_number), header);
     }
     header.size = bytes.substr(0, bytes.find('\n'));
     return header;
@@ -122,13 +152,14 @@ LightMap readHdr(std::string_view bytes, std::string_view name) {
         throw InputError(fmt::format("{}: ends in the middle of its {} x {} texels; copy or download it again", name,
                                      map.width, map.height));
     if (!pixels) throw InputError(fmt::format("{}: can't be decoded ({})", name, stbi_failure_reason()));
-    const auto scale = static_cast<float>(1.0 / header.exposure);
+    const Color scale(1.0 / header.exposure);
     const std::size_t count = static_cast<std::size_t>(map.width) * static_cast<std::size_t>(map.height);
     map.texels.resize(count);
     for (std::size_t i = 0; i < count; ++i) {
         const float* p = pixels.get() + 3 * i;
         map.texels[i] = Color(p[0], p[1], p[2]) * scale;
     }
+    if (const auto matrix = toRec709(header.primaries)) convert(map.texels, *matrix);
     return map;
 }
 

@@ -4,6 +4,7 @@
 #include "base/input_file.h"
 #include "shade/environment/hdr_reader.h"
 #include "shade/film/exr.h"
+#include "shade/primaries.h"
 
 #include <fmt/format.h>
 
@@ -16,6 +17,7 @@ namespace {
 
 LightMap fromExr(const std::filesystem::path& path) {
     ExrImage image = readExr(path, kMostMapTexels);
+    if (const auto matrix = toRec709(image.primaries)) convert(image.rgb, *matrix);
     return {image.width, image.height, std::move(image.rgb)};
 }
 

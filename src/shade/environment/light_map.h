@@ -30,7 +30,7 @@ inline constexpr float kBrightestTexel = 1e12f;
 
 /// Reads a .hdr or .exr map, recognized by content. Throws InputError: missing, of another kind, damaged, too large,
 /// not twice as wide as high, with texels that are negative, no number or, scaled, above kBrightestTexel, or black all
-/// over.
+/// over. Colors of other primaries that the file states (chromaticities, PRIMARIES=) become those of Rec. 709.
 /// @param stops  all texels are scaled by 2^stops
 LightMap readLightMap(const std::filesystem::path& path, double stops = 0.0);
 

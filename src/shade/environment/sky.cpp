@@ -4,6 +4,7 @@
 #include "shade/environment/map_environment.h"
 #include "shade/environment/studio.h"
 #include "shade/light/light.h"
+#include "shade/primaries.h"
 
 #include <glm/geometric.hpp>
 
@@ -58,10 +59,7 @@ struct Model {
         const double y = std::max(value[0], 0.0);
         const double xx = value[1] / value[2] * y;
         const double zz = (1.0 - value[1] - value[2]) / value[2] * y;
-        // XYZ to Rec. 709 (IEC 61966-2-1).
-        const glm::dvec3 rgb(3.2406 * xx - 1.5372 * y - 0.4986 * zz, -0.9689 * xx + 1.8758 * y + 0.0415 * zz,
-                             0.0557 * xx - 0.2040 * y + 1.0570 * zz);
-        return glm::max(rgb, glm::dvec3(0.0));
+        return glm::max(fromXyz(xx, y, zz), glm::dvec3(0.0));
     }
 
     /// Irradiance on a surface that faces the sun, in units of pi kcd/m2 like radiance() integrates to: klx.

@@ -210,6 +210,13 @@ std::map<std::string, std::string> attributesOf(const Imf::Header& header) {
     return result;
 }
 
+Primaries primariesOf(const Imf::Header& header) {
+    if (!Imf::hasChromaticities(header)) return {};
+    const Imf::Chromaticities& stated = Imf::chromaticities(header);
+    const auto at = [](const Imath::V2f& place) { return glm::dvec2(place.x, place.y); };
+    return {at(stated.red), at(stated.green), at(stated.blue), at(stated.white)};
+}
+
 ExrImage read(std::string_view bytes, const std::filesystem::path& path, std::size_t most) {
     ExrBytes stream(bytes, path.string());
     Imf::InputFile file(stream, 1);
@@ -230,7 +237,8 @@ ExrImage read(std::string_view bytes, const std::filesystem::path& path, std::si
                 fmt::format("{}: channel {} is subsampled; save it at full resolution", path.string(), name));
     }
 
-    ExrImage image{static_cast<int>(width), static_cast<int>(height), {}, attributesOf(file.header())};
+    ExrImage image{
+        static_cast<int>(width), static_cast<int>(height), {}, attributesOf(file.header()), primariesOf(file.header())};
     image.rgb.resize(static_cast<std::size_t>(width * height));
     const std::array<const char*, 3> names = {color ? "R" : "Y", "G", "B"};
     Imf::FrameBuffer buffer;

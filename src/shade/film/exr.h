@@ -4,6 +4,7 @@
 
 #include "shade/color.h"
 #include "shade/film/film.h"
+#include "shade/primaries.h"
 
 #include <cstddef>
 #include <filesystem>
@@ -29,6 +30,7 @@ struct ExrImage {
     int height = 0;
     std::vector<Color> rgb;
     std::map<std::string, std::string> attributes;  ///< string, int and float attributes as text, by name
+    Primaries primaries;                            ///< Rec. 709's where the header states none
 };
 
 bool isExr(std::string_view bytes);

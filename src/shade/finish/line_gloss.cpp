@@ -1,5 +1,6 @@
 #include "shade/finish/line_gloss.h"
 
+#include "shade/finish/named_brdf.h"
 #include "shade/palette/filament_color.h"
 
 #include <fmt/format.h>

@@ -2,6 +2,7 @@
 
 #include "shade/measured/scan_channels.h"
 #include "shade/measured/scan_text.h"
+#include "shade/primaries.h"
 
 #include <fast_float/fast_float.h>
 #include <fmt/format.h>
@@ -100,8 +101,8 @@ BrdfScan readAstm(std::string_view bytes, std::string_view name) {
         if (polar > 0.5 * std::numbers::pi + kSame) continue;  // transmission
         const auto value = [&](std::size_t c) { return row[4 + c]; };
         const ChannelChoice& ch = channels.choice;
-        const Color color = channels.xyz ? fromXyz(value(0), value(1), value(2))
-                                         : Color(glm::dvec3(value(ch.red), value(ch.green), value(ch.blue)));
+        const Color color(channels.xyz ? fromXyz(value(0), value(1), value(2))
+                                       : glm::dvec3(value(ch.red), value(ch.green), value(ch.blue)));
         incidences.emplace(keyOf(incidence), incidence);
         azimuths.emplace(keyOf(azimuth), azimuth);
         polars.emplace(keyOf(polar), std::min(polar, 0.5 * std::numbers::pi));

@@ -14,10 +14,4 @@ ChannelChoice chooseChannels(const std::vector<double>& wavelengths) {
     return {nearest(612.0), nearest(549.0), nearest(465.0)};
 }
 
-Color fromXyz(double x, double y, double z) {
-    // IEC 61966-2-1.
-    return Color(glm::dvec3(3.2406 * x - 1.5372 * y - 0.4986 * z, -0.9689 * x + 1.8758 * y + 0.0415 * z,
-                            0.0557 * x - 0.2040 * y + 1.0570 * z));
-}
-
 }  // namespace stratum::shade

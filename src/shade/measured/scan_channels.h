@@ -1,8 +1,6 @@
 // From the spectral channels of a file to the three of a Color.
 #pragma once
 
-#include "shade/color.h"
-
 #include <string_view>
 #include <vector>
 
@@ -14,8 +12,5 @@ struct ChannelChoice {
     std::size_t red, green, blue;
 };
 ChannelChoice chooseChannels(const std::vector<double>& wavelengths);
-
-/// CIE XYZ (white (0.9505, 1, 1.089)) to linear Rec. 709.
-Color fromXyz(double x, double y, double z);
 
 }  // namespace stratum::shade

@@ -3,6 +3,7 @@
 #include "shade/angles.h"
 #include "shade/measured/scan_channels.h"
 #include "shade/measured/scan_text.h"
+#include "shade/primaries.h"
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
@@ -99,7 +100,7 @@ BrdfScan readZemax(std::string_view bytes, std::string_view name) {
     for (const double r : file.radials) about.polars.push_back(r * kRadians);
     const std::array<std::vector<double>, 3>& c = file.channels;
     if (file.xyz)
-        about.append(c[0], c[1], c[2], name, &fromXyz);
+        about.append(c[0], c[1], c[2], name, [](double x, double y, double z) { return Color(fromXyz(x, y, z)); });
     else
         for (const double value : c[0]) about.values.emplace_back(static_cast<float>(value));
     // Radials run to 180 degrees: from a grazing mirror direction across the hemisphere.

@@ -3,6 +3,7 @@
 #include "base/checksum.h"
 #include "base/error.h"
 #include "base/input_file.h"
+#include "base/json_text.h"
 #include "shade/film/exr.h"
 #include "shade/film/exr_bytes.h"
 
@@ -109,8 +110,6 @@ PartWhole wholeOf(const Json& json) {
     return whole;
 }
 
-std::string textOf(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
-
 Json layersOf(const std::vector<FilmLayer>& layers) {
     Json json = Json::array();
     for (const FilmLayer& layer : layers) json.push_back({layer.name, layer.channels});
@@ -124,7 +123,7 @@ std::uint32_t crcOf(std::uint32_t before, const Film& film) {
 }
 
 std::uint32_t crcOf(const Json& json, const Metadata& metadata) {
-    std::string text = textOf(json);
+    std::string text = jsonText(json);
     for (const auto& [name, value] : metadata) text += fmt::format("\n{}\n{}", name, value);
     return checksumOf(text);
 }
@@ -198,7 +197,7 @@ Json headOf(const Film& film, const Part& part) {
 void writePart(PictureFile& file, const Film& film, Part part) {
     Json json = headOf(film, part);
     json["crc"] = crcOf(crcOf(json, part.metadata), film);
-    part.metadata[kAttribute] = textOf(json);
+    part.metadata[kAttribute] = jsonText(json);
     file.write(film, part.metadata);
 }
 

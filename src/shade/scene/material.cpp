@@ -2,6 +2,7 @@
 
 #include "base/category_colors.h"
 #include "base/error.h"
+#include "shade/finish/named_brdf.h"
 #include "shade/palette/filament_color.h"
 
 #include <fmt/format.h>

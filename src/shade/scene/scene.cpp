@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "base/parallel_for.h"
 #include "shade/camera/sampling.h"
+#include "shade/finish/named_brdf.h"
 
 #include <fmt/format.h>
 #include <glm/common.hpp>

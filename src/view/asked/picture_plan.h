@@ -2,11 +2,12 @@
 // vdbtrace that makes the same picture.
 #pragma once
 
+#include "assemble/file/object_file.h"
 #include "assemble/finished_picture.h"
-#include "assemble/object_file.h"
 #include "assemble/ready_scene.h"
 #include "view/asked/view_state.h"
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -16,11 +17,13 @@ namespace stratum::view {
 /// One input as it was given on the command line, with the options there, or with those of its scene file.
 struct GivenInput {
     std::string path;                              ///< as given
-    std::vector<assemble::ObjectOptions> objects;  ///< at least one
+    std::vector<assemble::ObjectOptions> objects;  ///< none: its scene file could not be read
     assemble::PictureOptions options;              ///< without events
     assemble::Denoising denoising;
     std::optional<double> exposure;  ///< stops, if the scene file says so
     std::vector<std::string> words;  ///< options on the command line, as vdbtrace takes them
+    /// Reads its scene file anew. Throws InputError. Empty: it stays as it is.
+    std::function<GivenInput()> again;
 };
 
 /// A picture that a page asks for.

@@ -1,10 +1,10 @@
 #include "view/asked/view_state.h"
 
-#include "assemble/object_file.h"
+#include "assemble/file/object_file.h"
 #include "base/error.h"
 #include "base/json_section.h"
 #include "gcode/toolpath/toolpath.h"
-#include "shade/brdf/preset.h"
+#include "shade/finish/named_brdf.h"
 #include "shade/integrator/integrator.h"
 #include "shade/palette/filament_color.h"
 #include "voxelize/grid/attributes.h"

@@ -18,7 +18,7 @@ namespace {
 using Json = nlohmann::json;
 
 constexpr int kLightSide = 32;
-constexpr double kReach = 0.06;  // share of the print's size within which surroundings darken
+constexpr double kSurroundings = 0.06;  // share of the print's size within which surroundings darken
 constexpr std::size_t kMaxColors = 65536;
 
 template <typename Vector>
@@ -87,7 +87,7 @@ Json lookOf(const ViewedPicture& picture, const PicturePlan& plan, const shade::
               {"exposure", picture.tone.exposure},
               {"follows", env == "studio" || env == "sky"},
               {"right", list(scene.camera.right())},
-              {"reach", kReach * glm::length(box.max - box.min)},
+              {"reach", kSurroundings * glm::length(box.max - box.min)},
               {"bed", nullptr}};
     shade::Color horizon(0.0F), zenith(0.0F);
     if (scene.backdrop) {

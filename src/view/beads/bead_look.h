@@ -3,7 +3,7 @@
 
 #include "gcode/toolpath/toolpath.h"
 #include "shade/integrator/bare_light.h"
-#include "view/view_scene.h"
+#include "view/input/view_scene.h"
 
 #include <nlohmann/json.hpp>
 

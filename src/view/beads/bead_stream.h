@@ -2,9 +2,9 @@
 #pragma once
 
 #include "gcode/toolpath/toolpath.h"
-#include "view/document.h"
-#include "view/output.h"
-#include "view/view_scene.h"
+#include "view/input/document.h"
+#include "view/input/output.h"
+#include "view/input/view_scene.h"
 
 #include <nlohmann/json.hpp>
 

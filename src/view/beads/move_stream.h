@@ -3,8 +3,8 @@
 
 #include "gcode/reader.h"
 #include "gcode/toolpath/toolpath.h"
-#include "view/document.h"
-#include "view/output.h"
+#include "view/input/document.h"
+#include "view/input/output.h"
 
 #include <cstddef>
 #include <cstdint>

@@ -7,7 +7,8 @@ export const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 export const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
 export const size = (a) => Math.hypot(...a);
 export const unit = (a) => times(a, 1 / (size(a) || 1));
-const rounded = (a) => a.map((v) => Math.round(v * 1e4) / 1e4); // a tenth of a micrometre, and short in a command line
+/** To a millionth of a scale: short in a command line. */
+export const roundedTo = (scale, v) => Number(v.toFixed(Math.max(0, Math.min(20, 6 - Math.floor(Math.log10(scale))))));
 
 /** Of a box [x0, y0, z0, x1, y1, z1]. */
 export const middleOf = (box) => times(add(box.slice(0, 3), box.slice(3)), 0.5);
@@ -18,11 +19,12 @@ export class OrbitCamera {
   azimuth = -1; // radians, of the eye about the target
   elevation = 0.5;
   fov = 28; // degrees, vertical
+  unit = 1; // the length of a millimetre
 
   /** From a camera of the server; the target is the point before it that is nearest to `middle`. */
   static from(camera, middle) {
     const orbit = new OrbitCamera();
-    orbit.distance = Math.max(1e-3, dot(sub(middle, camera.eye), camera.forward));
+    orbit.distance = Math.max(1e-6, dot(sub(middle, camera.eye), camera.forward));
     orbit.target = add(camera.eye, times(camera.forward, orbit.distance));
     orbit.elevation = Math.asin(Math.max(-1, Math.min(1, -camera.forward[2])));
     // Straight up or down, the azimuth is that of the picture's upper edge.
@@ -44,7 +46,8 @@ export class OrbitCamera {
     return OrbitCamera.from({ eye, forward: unit(sub(look_at, eye)), up: [0, 0, 1], fov }, look_at);
   }
   toJSON() {
-    return { eye: rounded(this.eye), look_at: rounded(this.target), fov: this.fov };
+    const [eye, look_at] = [this.eye, this.target].map((place) => place.map((v) => roundedTo(this.distance, v)));
+    return { eye, look_at, fov: this.fov };
   }
 
   get eye() {
@@ -73,8 +76,11 @@ export class OrbitCamera {
     this.target = add(this.target, add(times(this.right, -right * height), times(this.up, -up * height)));
   }
 
+  /** Returns by how much of it: 0.05 mm are the nearest. */
   zoom(factor) {
-    this.distance = Math.max(0.05, Math.min(1e5, this.distance * factor));
+    const before = this.distance;
+    this.distance = Math.max(0.05 * this.unit, Math.min(1e5 * this.unit, before * factor));
+    return this.distance / before;
   }
 
   /** All of a box, from the same side. */
@@ -154,10 +160,9 @@ export function handleInput(element, { orbit, moved, clicked, key }) {
   element.addEventListener("wheel", (event) => {
     event.preventDefault();
     const lines = event.deltaMode === 1 ? 30 : 1;
-    const factor = Math.exp(Math.max(-300, Math.min(300, event.deltaY * lines)) * 0.0015);
+    const factor = orbit().zoom(Math.exp(Math.max(-300, Math.min(300, event.deltaY * lines)) * 0.0015));
     const area = element.getBoundingClientRect();
     const away = (1 - factor) / factor; // what is under the pointer stays there
-    orbit().zoom(factor);
     orbit().pan((-away * (event.clientX - area.left - area.width / 2)) / area.height, (away * (event.clientY - area.top - area.height / 2)) / area.height);
     step();
   }, { passive: false });

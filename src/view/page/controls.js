@@ -1,4 +1,5 @@
 // The panel beside the picture: what it shows is the state, what is changed there changes the state.
+import { roundedTo } from "./camera.js";
 import { byId, checkbox, follow, renew, setOptions, setValue } from "./elements.js";
 
 export class Controls {
@@ -178,7 +179,7 @@ export class Controls {
     if (!byId("cut").checked || !this.#box) return null;
     const axis = Number(byId("cut-axis").value);
     const [low, high] = [this.#box[axis], this.#box[axis + 3]];
-    const at = Math.round((low + ((high - low) * byId("cut-at").valueAsNumber) / 1000) * 1000) / 1000;
+    const at = roundedTo(high - low || 1, low + ((high - low) * byId("cut-at").valueAsNumber) / 1000);
     const sign = byId("cut-flip").checked ? -1 : 1;
     const clip = [0, 0, 0, sign * at];
     clip[axis] = sign;

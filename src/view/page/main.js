@@ -71,7 +71,7 @@ const legend = new Legend(page);
 const motion = (page.motion = new MotionPanel(page));
 const second = new SecondPrint(page);
 const finder = new Finder(page);
-new Saving(page);
+const saving = new Saving(page);
 const answer = new Answer(page);
 
 // ---------------------------------------------------------------- asking
@@ -149,7 +149,7 @@ function hold() {
 }
 
 /** The camera that turns, from where the last picture was seen. */
-const turned = () => (orbit ??= camera && box ? OrbitCamera.from(camera, middleOf(box)) : new OrbitCamera());
+const turned = () => Object.assign((orbit ??= camera && box ? OrbitCamera.from(camera, middleOf(box)) : new OrbitCamera()), { unit: 1 / answer.mm });
 
 // ---------------------------------------------------------------- pictures
 
@@ -242,6 +242,7 @@ function openFile(wanted, view) {
   camera = null;
   answer.reset();
   print = null;
+  saving.stop();
   connection.send({ type: "open", file });
   own.open();
   ask(false);

@@ -27,17 +27,22 @@ export class MotionPanel {
     });
     page.connection.on("program", (program) => this.#setProgram(program));
     page.connection.on("refused", () => this.#setProgram(null)); // that may be what was asked for
+    page.connection.on("hello", () => this.#restart()); // what was asked for before gets no answer
   }
 
   /** The file was read, perhaps anew. */
   setFacts(facts) {
     this.facts = facts.print;
     this.#layers = null;
-    this.#asked = false;
-    this.#bead = -1;
     this.#listed = {};
+    this.#restart();
     byId("also").lastChild.hidden = !facts.print?.bed;
     this.show();
+  }
+  #restart() {
+    this.#asked = this.#layers !== null;
+    this.#waits = false;
+    this.#bead = -1;
   }
   get planned() {
     return this.#layers?.seconds.reduce((sum, each) => sum + each, 0);

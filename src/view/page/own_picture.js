@@ -5,6 +5,7 @@ import { BED_TINTS, EXCLUDED_TINTS, bedLines } from "./bed.js";
 import { KINDS, MoveTable } from "./move_table.js";
 import { pixelRatio } from "./elements.js";
 import { Pace } from "./pace.js";
+import { release } from "./webgl.js";
 
 const ALL = 0xffffffff;
 const NOT_HERE = "the beads are not here yet";
@@ -169,6 +170,8 @@ export class OwnPicture extends EventTarget {
     try {
       this.#renderer = new BeadRenderer(this.canvas, this.table);
     } catch (error) {
+      const gl = this.canvas.getContext("webgl2");
+      if (gl) release(gl); // what was made before
       return this.#stop(error.message);
     }
     this.#key = "";

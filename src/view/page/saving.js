@@ -11,11 +11,16 @@ export class Saving {
     this.page = page;
     byId("save").addEventListener("click", () => this.#press());
     const { connection } = page;
-    for (const type of ["hello", "failed"]) connection.on(type, () => this.#set(false)); // the server knows nothing of it any more
+    for (const type of ["hello", "failed"]) connection.on(type, () => this.stop()); // the server knows nothing of it any more
     connection.on("saving", ({ done }) => this.#goesOn && page.say(`saving … ${Math.round(done * 100)} %`));
     connection.on("picture", ({ kind, file }) => kind === "saved" && this.#take(file));
   }
 
+  /** What it waits for will not come. */
+  stop() {
+    if (this.#goesOn) this.page.say("not saved");
+    this.#set(false);
+  }
   #press() {
     const { connection, say, state, pixels } = this.page;
     this.#set(!this.#goesOn);

@@ -49,7 +49,10 @@ export class SecondPrint {
     byId("stage").classList.toggle("two", file !== "");
     this.#say("");
     this.page.own.paintOver(null);
-    if (file === "") return this.page.ask(false);
+    if (file === "") {
+      this.#own?.refuse("no file is chosen"); // gives its memory back
+      return this.page.ask(false);
+    }
     const connection = (this.#connection = new Connection(this.page.connection.url));
     if (!this.#own) {
       this.#own = new OwnPicture(byId("second-beads"));

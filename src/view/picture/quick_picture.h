@@ -2,7 +2,7 @@
 #pragma once
 
 #include "shade/integrator/bare_light.h"
-#include "view/view_scene.h"
+#include "view/input/view_scene.h"
 
 #include <cstdint>
 #include <vector>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "shade/integrator/render.h"
-#include "view/view_scene.h"
+#include "view/input/view_scene.h"
 
 #include <cstdint>
 #include <functional>

@@ -92,8 +92,7 @@ void chooseByItself(const gcode::Toolpath& toolpath, std::span<const std::uint32
         count = static_cast<int>(std::min<double>(least, kFinestForPixels));
     }
     lattice.voxel_size = lattice.layer_height / count;
-    lattice.reason = fmt::format("chosen: {} voxels a layer of {:g} mm, about {:.0f} M active", count,
-                                 lattice.layer_height, voxelsAt(count) * 1e-6);
+    lattice.reason = fmt::format("chosen: {} voxels a layer of {:g} mm", count, lattice.layer_height);
     if (facets) lattice.reason += fmt::format("; a pixel spans {:.3g} mm", request.pixel);
     if (short_of_memory)
         lattice.reason += fmt::format("; {} would take about {:.2g} GB of the {:.2g} GB that are free", count + 1,

@@ -11,6 +11,7 @@
 #include <array>
 #include <charconv>
 #include <set>
+#include <tuple>
 
 namespace stratum::voxelize {
 namespace {
@@ -174,7 +175,10 @@ void parseFeatures(std::string_view text, Selection& selection) {
             const bool sign = part.starts_with('+') || part.starts_with('-');
             throw UsageError(
                 fmt::format("--features {}: expected all, or +NAME or -NAME, separated by commas; the names are: {}{}",
-                            part, fmt::join(names, " "), didYouMean(part.substr(sign ? 1 : 0), names)));
+                            part, fmt::join(names, " "),
+                            !sign && gcode::featureNamed(part) != gcode::Feature::count_
+                                ? fmt::format("; +{0} keeps that alone, -{0} leaves it out", part)
+                                : didYouMean(part.substr(sign ? 1 : 0), names)));
         }
         // A list that starts with + names what to keep; one that starts with - names what to drop.
         if (first) selection.features.fill(part[0] == '-');
@@ -253,10 +257,10 @@ std::vector<Snapshot> parseSnapshots(std::string_view text, const gcode::Toolpat
     };
     for (const std::string_view part : split(text, ',')) {
         const auto bad = [&] {
-            return UsageError(
-                fmt::format("{} {}: expected N% (0 to 100), layer:N, bead:N, every:N, time:MINUTES, time:SECONDSs "
-                            "or time:N%, separated by commas; the print has layers 1 to {} and {} beads",
-                            option, part, toolpath.layer_count, toolpath.beads.size()));
+            return UsageError(fmt::format(
+                "{} {}: expected N% (above 0, to 100), layer:N, bead:N, every:N, time:MINUTES, time:SECONDSs "
+                "or time:N%, separated by commas; the print has layers 1 to {} and {} beads",
+                option, part, toolpath.layer_count, toolpath.beads.size()));
         };
         if (part.ends_with('%') && !part.starts_with("time:")) {
             const auto percent = parseNumber<double>(part.substr(0, part.size() - 1));
@@ -285,8 +289,9 @@ std::vector<Snapshot> parseSnapshots(std::string_view text, const gcode::Toolpat
         }
     }
     std::vector<Snapshot> snapshots = labelled(cuts, toolpath.layer_count);
-    std::stable_sort(snapshots.begin(), snapshots.end(),
-                     [](const Snapshot& a, const Snapshot& b) { return a.bead_count < b.bead_count; });
+    std::stable_sort(snapshots.begin(), snapshots.end(), [](const Snapshot& a, const Snapshot& b) {
+        return std::tie(a.bead_count, a.label) < std::tie(b.bead_count, b.label);
+    });
     const auto same = [](const Snapshot& a, const Snapshot& b) { return a.label == b.label; };
     snapshots.erase(std::unique(snapshots.begin(), snapshots.end(), same), snapshots.end());
     return snapshots;

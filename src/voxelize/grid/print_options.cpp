@@ -63,12 +63,13 @@ Lattice latticeFor(const PrintOptions& options, const gcode::Toolpath& toolpath,
         const double lost = lostShare(toolpath, selection, lattice);
         const double per_layer = lattice.layer_height / lattice.voxel_size;
         if (lost > 0 || per_layer < 1.01)
-            lattice.warning = fmt::format(
-                "{:.2g} voxel{} a layer of {:g} mm: {:.1f} % of a sample of beads have no solid in their middle; layer "
-                "lines "
-                "need {} a layer, {:g} mm",
-                per_layer, per_layer < 1.01 ? "" : "s", lattice.layer_height, 100 * lost, kFewestVoxelsPerLayer,
-                lattice.layer_height / kFewestVoxelsPerLayer);
+            lattice.warning =
+                fmt::format("{:.2g} voxel{} a layer of {:g} mm: {}layer lines need {} a layer, {:g} mm", per_layer,
+                            per_layer < 1.01 ? "" : "s", lattice.layer_height,
+                            lost > 0 ? fmt::format("{:.1f} % of a sample of beads have no solid in their middle; ",
+                                                   std::max(100 * lost, 0.1))
+                                     : "",
+                            kFewestVoxelsPerLayer, lattice.layer_height / kFewestVoxelsPerLayer);
     }
     return lattice;
 }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 #include <optional>
+#include <tuple>
 #include <utility>
 
 namespace stratum::voxelize {
@@ -63,7 +64,7 @@ void FedVolume::feed(std::uint32_t rank, std::span<TileSums::Node> nodes) const 
     const double part = along / (steps * static_cast<double>(kAcross.size()));
     // Of a bead that widens, the change from its start to its end as a share of its section.
     const double change = bead.arc < 0 && width > 0 ? gcode::widening(toolpath_, bead) / width : 0;
-    const auto [from, to] = stepsInTile(bead, length, width, steps);
+    const auto [from, to] = stepsInTile(bead, path, length, width, steps);
     const bool line = path.straight() && path.length() > 0;
     const Place start = placeAt(path, 0, length);
     for (int n = from; n < to; ++n) {
@@ -103,11 +104,20 @@ double FedVolume::feedEnds(std::uint32_t index, double volume, const gcode::Plan
     return discs;
 }
 
-std::pair<int, int> FedVolume::stepsInTile(const gcode::Bead& bead, double length, double width, int steps) const {
-    if (bead.arc >= 0) return {0, steps};
+std::pair<int, int> FedVolume::stepsInTile(const gcode::Bead& bead, const gcode::PlanPath& path, double length,
+                                           double width, int steps) const {
     double low = 0;
     double high = 1;
     const double more = width + length / steps;
+    const auto withinSteps = [&]() -> std::pair<int, int> {
+        if (low >= high) return {0, 0};
+        return {std::max(static_cast<int>(std::floor(low * steps)) - 1, 0),
+                std::min(static_cast<int>(std::ceil(high * steps)) + 1, steps)};
+    };
+    if (bead.arc >= 0) {
+        if (!path.straight()) std::tie(low, high) = nearTile(path, more);
+        return withinSteps();
+    }
     const auto clip = [&](double from, double to, int first) {
         const double least = first * kNodeSpacing - more;
         const double most = (first + kSumCells) * kNodeSpacing + more;
@@ -119,9 +129,32 @@ std::pair<int, int> FedVolume::stepsInTile(const gcode::Bead& bead, double lengt
     };
     clip(bead.x0, bead.x1, first_x_);
     clip(bead.y0, bead.y1, first_y_);
-    if (low >= high) return {0, 0};
-    return {std::max(static_cast<int>(std::floor(low * steps)) - 1, 0),
-            std::min(static_cast<int>(std::ceil(high * steps)) + 1, steps)};
+    return withinSteps();
+}
+
+// Seen from the center of an arc, the tile lies within an angle to both sides of its middle.
+std::pair<double, double> FedVolume::nearTile(const gcode::PlanPath& path, double more) const {
+    constexpr double kHalf = 0.5 * kSumCells * kNodeSpacing;
+    const double x = first_x_ * kNodeSpacing + kHalf - path.center().x;
+    const double y = first_y_ * kNodeSpacing + kHalf - path.center().y;
+    const double away = std::hypot(x, y);
+    const double reach = std::numbers::sqrt2 * kHalf + more;
+    if (away <= reach) return {0, 1};
+    if (std::abs(away - path.radius()) > reach) return {0, 0};
+    const double to_sides = std::asin(reach / away);
+    const gcode::PlanPoint start = path.startSide();
+    const double turn = std::abs(path.turn());
+    // From the start, in the direction of its turn.
+    double middle = std::atan2(start.x * y - start.y * x, start.x * x + start.y * y);
+    if (path.turn() < 0) middle = -middle;
+    double low = 1;
+    double high = 0;
+    for (middle -= 2 * std::numbers::pi; middle - to_sides < turn; middle += 2 * std::numbers::pi) {
+        if (middle + to_sides < 0) continue;
+        low = std::min(low, std::max(middle - to_sides, 0.0) / turn);
+        high = std::max(high, std::min(middle + to_sides, turn) / turn);
+    }
+    return {low, high};
 }
 
 void FedVolume::addPoint(double x, double y, double volume, std::span<TileSums::Node> nodes) const {

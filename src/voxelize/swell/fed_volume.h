@@ -35,8 +35,11 @@ private:
     /// returns their volume.
     double feedEnds(std::uint32_t index, double volume, const gcode::PlanPath& path,
                     std::span<TileSums::Node> nodes) const;
-    /// Steps of a straight bead that may lay something in the tile; all of an arc.
-    std::pair<int, int> stepsInTile(const gcode::Bead& bead, double length, double width, int steps) const;
+    /// Steps of a bead that may lay something in the tile.
+    std::pair<int, int> stepsInTile(const gcode::Bead& bead, const gcode::PlanPath& path, double length, double width,
+                                    int steps) const;
+    /// Of an arc, the parts of its length between which it is within `more` mm of the tile.
+    std::pair<double, double> nearTile(const gcode::PlanPath& path, double more) const;
     /// Each point lies in one cell of one tile.
     void addPoint(double x, double y, double volume, std::span<TileSums::Node> nodes) const;
 

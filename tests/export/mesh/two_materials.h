@@ -1,7 +1,7 @@
 // A small closed mesh of two materials: a pyramid, its bottom and one side of the first.
 #pragma once
 
-#include "export/surface_mesh.h"
+#include "export/mesh/surface_mesh.h"
 
 #include <filesystem>
 #include <fstream>

@@ -249,7 +249,7 @@ TEST(Machine, FetchingUnloadedFilamentIsNoExtrusion) {
     const Toolpath toolpath = readProgram(program);
     ASSERT_EQ(toolpath.beads.size(), 2U);
     EXPECT_NEAR(toolpath.filament_mm, 1 + 3, 1e-9);
-    // A retraction, however often, is none: what the file pushes on a path is laid there.
+    // Retractions of more than 10 mm are taken back by macros: what the file pushes on a path is laid there.
     EXPECT_NEAR(readProgram("M83\nG1 Z.2\nG1 E-16\nG1 X50 E5\nG1 E-16\nG1 X0 E5\n").filament_mm, 10, 1e-9);
 }
 

@@ -137,11 +137,23 @@ TEST(Lexer, AParameterOfAnEarlierLineIsForgotten) {
 }
 
 TEST(Lexer, TooManyCommandsInALineAreBounded) {
-    Lexer lexer("G1 G2 G3 G4 G5 G6 X1");
+    std::string text;
+    for (std::size_t n = 0; n < Line::kMaxCommands + 2; ++n) text += "G1 ";
+    text += "X1";
+    Lexer lexer(text);
     Line line;
     ASSERT_TRUE(lexer.next(line));
     EXPECT_EQ(line.count, Line::kMaxCommands);
     EXPECT_TRUE(line.unreadable);
+}
+
+// As machine tools have it.
+TEST(Lexer, FiveCommandsInALine) {
+    Lexer lexer("G21 G90 G17 M83 G92 E0");
+    Line line;
+    ASSERT_TRUE(lexer.next(line));
+    EXPECT_EQ(show(line), "<G21><G90><G17><M83><G92 E0>");
+    EXPECT_FALSE(line.unreadable);
 }
 
 TEST(Lexer, ALineOfAMegabyte) {

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <chrono>
 #include <cmath>
 #include <numeric>
 #include <string>
@@ -171,6 +172,16 @@ TEST(Purpose, AFootThatThePartStandsOnIsNoBrim) {
     // A chamfer neither.
     const Toolpath chamfer = Program().up(0.2).slab(-0.6, -0.6, 20.6, 20.6).box(0, 0, 20, 20, 2, 8).read();
     EXPECT_EQ(brim(chamfer), 0);
+}
+
+// Sixteen kilometres of lines near the bed are in no print: a damaged file.
+TEST(Purpose, LinesWithoutEndAreLeftAlone) {
+    std::string text = "M83\nG1 Z0.2\n";
+    for (int n = 0; n < 160; ++n) text += fmt::format("G0 X-50000 Y{}\nG1 X50000 E90\n", n * 30);
+    const auto start = std::chrono::steady_clock::now();
+    for (const Purpose purpose : purposesOf(readProgram(text))) EXPECT_EQ(purpose, Purpose::part);
+    EXPECT_LT(std::chrono::steady_clock::now() - start,
+              std::chrono::seconds(20));  // 6 minutes before there was a bound
 }
 
 TEST(Purpose, PartsPrintedOneAfterAnother) {

@@ -2,11 +2,13 @@
 
 #include "gcode/program.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <string>
 
 namespace stratum::gcode {
 namespace {
@@ -70,6 +72,18 @@ TEST(Sections, SlopedBeadsHaveTheNominalHeight) {
     EXPECT_FLOAT_EQ(unknown.height(0), 0.2F);
     ASSERT_EQ(unknown.warnings.size(), 1U);
     EXPECT_NE(unknown.warnings[0].text.find("--layer-height"), std::string::npos);
+}
+
+// Layers of a spiral are counted by its height: many vectors have a place for each.
+TEST(Sections, ASpiralHasNoMoreLayersThanBeads) {
+    std::string text = "M83\nG1 X10 Y0 Z0.011\n";
+    for (int n = 1; n <= 600; ++n)
+        text += fmt::format("G1 X{:.4f} Y{:.4f} Z{:.6f} E0.002\n", 10 * std::cos(n * 0.105), 10 * std::sin(n * 0.105),
+                            0.011 + n * 0.000183);
+    for (int n = 0; n < 5; ++n)
+        text += fmt::format("G1 X-95000 Y{0} Z1\nG1 X-94990 Y{0} Z1 E1\nG1 X95000 Y{0} Z99000 E4000\n", n + 107);
+    const Toolpath toolpath = readProgram(text);
+    EXPECT_LE(toolpath.layer_count, toolpath.beads.size());
 }
 
 TEST(Sections, ImpossibleHeightsFallBackWithAWarning) {

@@ -26,6 +26,9 @@ TEST(Stated, Durations) {
     EXPECT_EQ(parseDuration("2.5"), 2.5);
     for (const auto* text : {"", "soon", "-3", "13-07-10 UTC", "1e99999", "3 parsecs"})
         EXPECT_FALSE(parseDuration(text).has_value()) << text;
+    // Beyond what any print takes, also before prose.
+    for (const auto* text : {"99999999999999999999h", "1e300d 5 of", "99999999999999999999s -"})
+        EXPECT_FALSE(parseDuration(text).has_value()) << text;
     EXPECT_EQ(describeDuration(4441), "1 h 14 min 1 s");
     EXPECT_EQ(describeDuration(180.4), "3 min 0 s");
     EXPECT_EQ(describeDuration(7), "7 s");

@@ -72,6 +72,11 @@ TEST(ReportFile, WritesByItsEnding) {
             EXPECT_EQ(nlohmann::ordered_json::parse(text.str()), toJson(report));
         }
     }
+    PrintReport latin = report;
+    latin.slicer = "M\xfcller";  // Latin-1 is no UTF-8
+    writeReport(latin, folder.path() / "latin.json");
+    std::ifstream file(folder.path() / "latin.json");
+    EXPECT_NE(nlohmann::ordered_json::parse(file).dump().find("M\xef\xbf\xbdller"), std::string::npos);
     EXPECT_FALSE(isReportPath("a.txt"));
     EXPECT_THROW(writeReport(report, folder.path() / "a.txt"), UsageError);
     EXPECT_THROW(writeReport(report, folder.path() / "none" / "a.md"), OutputError);

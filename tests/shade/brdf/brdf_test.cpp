@@ -1,7 +1,7 @@
-#include "shade/brdf/brdf.h"
 
 #include "base/error.h"
 #include "scratch_folder.h"
+#include "shade/finish/named_brdf.h"
 
 #include <gtest/gtest.h>
 

@@ -41,7 +41,9 @@ TEST(HdrReader, RefusesDamage) {
                              "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n+Y 2 +X 4\n",
                              "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 99999 +X 199999\n",
                              "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y -2 +X 4\n",
-                             "#?RADIANCE\nEXPOSURE=0\nFORMAT=32-bit_rle_rgbe\n\n-Y 2 +X 4\n"})
+                             "#?RADIANCE\nEXPOSURE=0\nFORMAT=32-bit_rle_rgbe\n\n-Y 2 +X 4\n",
+                             "#?RADIANCE\nCOLORCORR=1 1\nFORMAT=32-bit_rle_rgbe\n\n-Y 2 +X 4\n",
+                             "#?RADIANCE\nPRIMARIES=1 2 nan\nFORMAT=32-bit_rle_rgbe\n\n-Y 2 +X 4\n"})
         EXPECT_THROW(readHdr(text, "t.hdr"), InputError) << text;
 }
 

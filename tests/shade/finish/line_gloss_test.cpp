@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "shade/analytic_prints.h"
 #include "shade/brdf_checks.h"
+#include "shade/finish/named_brdf.h"
 #include "shade/frame.h"
 #include "shade/scene/scene.h"
 #include "shade/scene/surface.h"

@@ -1,6 +1,7 @@
 #include "shade/finish/finishes.h"
 
 #include "shade/brdf_checks.h"
+#include "shade/finish/named_brdf.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,5 @@
 #include "shade/integrator/path.h"
+#include "shade/finish/named_brdf.h"
 
 #include "shade/analytic_prints.h"
 #include "shade/brdf/plastic.h"

@@ -1,7 +1,7 @@
 #include "shade/palette/color_name.h"
+#include "shade/finish/named_brdf.h"
 
 #include "base/error.h"
-#include "shade/brdf/brdf.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,5 @@
 #include "shade/scene/material.h"
+#include "shade/finish/named_brdf.h"
 
 #include "base/error.h"
 #include "shade/analytic_prints.h"

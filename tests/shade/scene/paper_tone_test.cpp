@@ -1,4 +1,5 @@
 #include "shade/scene/paper_tone.h"
+#include "shade/finish/named_brdf.h"
 
 #include "shade/analytic_prints.h"
 #include "shade/integrator/render.h"

@@ -4,7 +4,7 @@
 #include "scratch_folder.h"
 #include "shade/film/picture.h"
 #include "shade/post/denoise.h"
-#include "view/document.h"
+#include "view/input/document.h"
 
 #include <gtest/gtest.h>
 

@@ -169,6 +169,12 @@ TEST(Snapshots, PercentLayerAndEvery) {
         EXPECT_THROW(parseSnapshots(bad, toolpath), UsageError) << bad;
 }
 
+TEST(Snapshots, OneMomentOfOneNameIsThereOnce) {
+    const gcode::Toolpath toolpath = tenLayers();
+    for (const char* text : {"100%,layer:10,100%", "50%,50.0%,layer:5,50%"})
+        EXPECT_EQ(parseSnapshots(text, toolpath).size(), 2U) << text;
+}
+
 // Half of the print is half of what is drawn.
 TEST(Snapshots, PrimeLinesAreNoShare) {
     gcode::Toolpath toolpath = tenLayers();
