@@ -15,6 +15,7 @@
 #include <csignal>
 #include <cstdio>
 #include <cstring>
+#include <fstream>
 #include <mutex>
 #include <set>
 #include <string>
@@ -319,6 +320,15 @@ void AtomicFile::removeOnSignals() {
         action.sa_handler = removeAndDie;
         ::sigaction(signal, &action, nullptr);
     }
+}
+
+void writeFile(const std::filesystem::path& destination, std::string_view bytes) {
+    AtomicFile file(destination);
+    std::ofstream stream(file.temporary(), std::ios::binary);
+    stream.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+    stream.close();
+    if (!stream) throw writeError(destination.string());
+    file.commit();
 }
 
 }  // namespace stratum

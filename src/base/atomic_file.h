@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <functional>
 #include <string>
+#include <string_view>
 
 namespace stratum {
 
@@ -89,5 +90,8 @@ private:
     int stream_ = -1;                  // the destination, if it is a stream
     int slot_ = -1;                    // of part_, while there is such a file
 };
+
+/// All of a file at once, as AtomicFile does. Throws OutputError, UsageError.
+void writeFile(const std::filesystem::path& destination, std::string_view bytes);
 
 }  // namespace stratum

@@ -7,7 +7,6 @@
 
 #include <fmt/format.h>
 
-#include <fstream>
 #include <string>
 
 namespace stratum::exporter {
@@ -73,12 +72,7 @@ void writeUsda(const openvdb::GridPtrVec& grids, const std::filesystem::path& vd
     text += usdMaterials(options.materials, "/print");
     text += "}\n";
 
-    AtomicFile file(usda);
-    std::ofstream stream(file.temporary(), std::ios::binary);
-    stream << text;
-    stream.close();
-    if (!stream) throw writeError(usda.string());
-    file.commit();
+    writeFile(usda, text);
 }
 
 }  // namespace stratum::exporter

@@ -58,6 +58,10 @@ public:
         value(std::uint64_t{list.size()});
         for (const Value& item : list) visit(item);
     }
+    template <typename... Values>
+    void values(const Values&... all) {
+        (value(all), ...);
+    }
     std::string take() { return std::move(bytes_); }
 
 private:
@@ -113,6 +117,10 @@ public:
         list.resize(count(1));
         for (Value& item : list) visit(item);
     }
+    template <typename... Values>
+    void values(Values&... all) {
+        (value(all), ...);
+    }
     bool atEnd() const { return bytes_.empty(); }
     [[noreturn]] static void fail() { throw InputError(fmt::format("the pickle of a Toolpath is damaged{}", kRemedy)); }
 
@@ -139,36 +147,14 @@ template <typename Archive, typename Facts>
 void visitStated(Archive& archive, Facts& facts) {
     auto& [seconds, model_seconds, grams, materials, profiles, nozzles, densities, prices, printer, layer, first_layer,
            bed, excluded, belt, belt_angle, programs_left_out] = facts;
-    archive.value(seconds);
-    archive.value(model_seconds);
-    archive.value(grams);
-    archive.value(materials);
-    archive.value(profiles);
-    archive.value(nozzles);
-    archive.value(densities);
-    archive.value(prices);
-    archive.value(printer);
-    archive.value(layer);
-    archive.value(first_layer);
-    archive.value(bed);
-    archive.value(excluded);
-    archive.value(belt);
-    archive.value(belt_angle);
-    archive.value(programs_left_out);
+    archive.values(seconds, model_seconds, grams, materials, profiles, nozzles, densities, prices, printer, layer,
+                   first_layer, bed, excluded, belt, belt_angle, programs_left_out);
 }
 
 template <typename Archive, typename Model>
 void visitDeposit(Archive& archive, Model& model) {
     auto& [beads, corner_fraction, corner_mm, flow_lag, pressure_advance, nozzle_diameter, sag, crown, strings] = model;
-    archive.value(beads);
-    archive.value(corner_fraction);
-    archive.value(corner_mm);
-    archive.value(flow_lag);
-    archive.value(pressure_advance);
-    archive.value(nozzle_diameter);
-    archive.value(sag);
-    archive.value(crown);
-    archive.value(strings);
+    archive.values(beads, corner_fraction, corner_mm, flow_lag, pressure_advance, nozzle_diameter, sag, crown, strings);
 }
 
 template <typename Archive, typename Limits>
@@ -176,26 +162,14 @@ void visitLimits(Archive& archive, Limits& limits) {
     archive.value(limits.rule);
     for (std::size_t n = 0; n < gcode::kLimitCount; ++n) {
         auto& [kind, place, value, changes, first_change] = limits[static_cast<gcode::Limit>(n)];
-        archive.value(kind);
-        archive.value(place);
-        archive.value(value);
-        archive.value(changes);
-        archive.value(first_change);
+        archive.values(kind, place, value, changes, first_change);
     }
 }
 
 template <typename Archive, typename Times>
 void visitTimes(Archive& archive, Times& times) {
     auto& [total, travel, retraction, waiting, before_model, after_model, features, layers, rule, limits] = times;
-    archive.value(total);
-    archive.value(travel);
-    archive.value(retraction);
-    archive.value(waiting);
-    archive.value(before_model);
-    archive.value(after_model);
-    archive.value(features);
-    archive.value(layers);
-    archive.value(rule);
+    archive.values(total, travel, retraction, waiting, before_model, after_model, features, layers, rule);
     visitLimits(archive, limits);
 }
 
@@ -208,56 +182,31 @@ void visitToolpath(Archive& archive, Path& toolpath) {
     archive.records(beads);
     archive.each(arcs, [&archive](auto& item) {
         auto& [center_x, center_y, sweep, line] = item;
-        archive.value(center_x);
-        archive.value(center_y);
-        archive.value(sweep);
-        archive.value(line);
+        archive.values(center_x, center_y, sweep, line);
     });
     archive.records(runs);
     archive.value(objects);
     archive.each(warnings, [&archive](auto& item) {
         auto& [text, first_line, count] = item;
-        archive.value(text);
-        archive.value(first_line);
-        archive.value(count);
+        archive.values(text, first_line, count);
     });
-    archive.value(slicer);
-    archive.value(firmware);
-    archive.value(format);
-    archive.value(filament_diameter);
-    archive.value(layer_height);
+    archive.values(slicer, firmware, format, filament_diameter, layer_height);
     visitDeposit(archive, deposit);
-    archive.value(layer_count);
-    archive.value(belt_angle);
-    archive.value(tool_colors);
-    archive.value(palette_tools);
+    archive.values(layer_count, belt_angle, tool_colors, palette_tools);
     archive.each(color_changes, [&archive](auto& item) {
         auto& [first_bead, tool, color, is_stated] = item;
-        archive.value(first_bead);
-        archive.value(tool);
-        archive.value(color);
-        archive.value(is_stated);
+        archive.values(first_bead, tool, color, is_stated);
     });
     for (auto* const values : {&temperatures, &fans})
         archive.each(*values, [&archive](auto& item) {
             auto& [line, tool, value] = item;
-            archive.value(line);
-            archive.value(tool);
-            archive.value(value);
+            archive.values(line, tool, value);
         });
     archive.records(timing);
     archive.records(flow);
-    archive.value(filament_by_tool);
-    archive.value(footer_by_tool);
-    archive.value(footer_mm);
+    archive.values(filament_by_tool, footer_by_tool, footer_mm);
     visitStated(archive, stated);
-    archive.value(extrusion_rule);
-    archive.value(firmware_reason);
-    archive.value(cut_short);
-    archive.value(filament_mm);
-    archive.value(prime_mm);
-    archive.value(flushed_mm);
-    archive.value(extruded_mm3);
+    archive.values(extrusion_rule, firmware_reason, cut_short, filament_mm, prime_mm, flushed_mm, extruded_mm3);
 }
 static_assert(sizeof(gcode::Bead) == 60 && sizeof(gcode::Run) == 16 && sizeof(gcode::BeadTiming) == 24 &&
                   sizeof(gcode::BeadFlow) == 12 && sizeof(motion::Travel) == 96,

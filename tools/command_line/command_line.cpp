@@ -23,7 +23,6 @@
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
 #include <iostream>
 #include <limits>
 #include <new>
@@ -234,12 +233,7 @@ void writeStats(const CommonOptions& options, const nlohmann::ordered_json& repo
             throw OutputError("--stats -: standard output could not be written; is the disk full?");
         return;
     }
-    AtomicFile file(options.stats);
-    std::ofstream stream(file.temporary(), std::ios::binary);
-    stream << text;
-    stream.close();
-    if (!stream) throw writeError(options.stats);
-    file.commit();
+    writeFile(options.stats, text);
 }
 
 void tellError(std::string_view text) {

@@ -49,10 +49,10 @@ Program openContainer(std::string_view bytes, std::string_view name, std::option
 namespace {
 
 struct Descriptor {
-    explicit Descriptor(const std::string& path) : fd(::open(path.c_str(), O_RDONLY | O_CLOEXEC)) {}
-    ~Descriptor() {
-        if (fd >= 0) ::close(fd);
+    explicit Descriptor(const std::string& path) : fd(::open(path.c_str(), O_RDONLY | O_CLOEXEC)) {
+        if (fd < 0) throw InputError(fmt::format("{}: can't be opened ({})", path, std::strerror(errno)));
     }
+    ~Descriptor() { ::close(fd); }
     Descriptor(const Descriptor&) = delete;
     Descriptor& operator=(const Descriptor&) = delete;
     const int fd;

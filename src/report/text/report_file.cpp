@@ -6,8 +6,6 @@
 
 #include <fmt/format.h>
 
-#include <fstream>
-
 namespace stratum::report {
 namespace {
 
@@ -24,15 +22,9 @@ void writeReport(const PrintReport& report, const std::filesystem::path& path) {
     if (!isReportPath(path))
         throw UsageError(fmt::format("--report {}: the name must end in .json, .md or .html", path.string()));
     const std::string ending = endingOf(path);
-    const std::string text = ending == ".json" ? jsonText(toJson(report), 1) + "\n"
-                             : ending == ".md" ? reportMarkdown(report)
-                                               : reportPage(report);
-    AtomicFile file(path);
-    std::ofstream stream(file.temporary(), std::ios::binary);
-    stream << text;
-    stream.close();
-    if (!stream) throw writeError(path.string());
-    file.commit();
+    writeFile(path, ending == ".json" ? jsonText(toJson(report), 1) + "\n"
+                    : ending == ".md" ? reportMarkdown(report)
+                                      : reportPage(report));
 }
 
 }  // namespace stratum::report

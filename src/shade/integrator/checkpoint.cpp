@@ -8,7 +8,6 @@
 #include <fmt/format.h>
 
 #include <cstring>
-#include <fstream>
 #include <type_traits>
 
 namespace stratum::shade {
@@ -83,13 +82,6 @@ std::string Checkpoint::bytesOf(const RenderState& state) const {
     return bytes;
 }
 
-void Checkpoint::write(const std::string& bytes) const {
-    AtomicFile file(path_);
-    std::ofstream out(file.temporary(), std::ios::binary);
-    out.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-    out.close();
-    if (!out) throw writeError(path_.string());
-    file.commit();
-}
+void Checkpoint::write(const std::string& bytes) const { writeFile(path_, bytes); }
 
 }  // namespace stratum::shade

@@ -100,12 +100,7 @@ std::string Page::html() const { return report::htmlPage(title_, body_ + made_by
 
 void writePage(const StudyOptions& common, const std::string& name, const Page& page, StudyReport& report) {
     report.html = common.folder / (name + ".html");
-    AtomicFile file(report.html);
-    std::ofstream stream(file.temporary(), std::ios::binary);
-    stream << page.html();
-    stream.close();
-    if (!stream) throw writeError(report.html.string());
-    file.commit();
+    writeFile(report.html, page.html());
 }
 
 void writeTable(const StudyOptions& common, const std::string& name, const Table& table, StudyReport& report) {

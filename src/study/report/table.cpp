@@ -9,7 +9,6 @@
 #include <cassert>
 #include <cmath>
 #include <cstdlib>
-#include <fstream>
 #include <limits>
 
 namespace stratum::study {
@@ -32,14 +31,10 @@ double Table::number(const Row& row, std::string_view column) const {
 }
 
 void Table::write(const std::filesystem::path& path) const {
-    AtomicFile file(path);
-    std::ofstream stream(file.temporary(), std::ios::binary);
     // By this mark the next study knows that it may replace the file.
-    stream << csvLine(joined(columns_, {"made_by"}));
-    for (const Row& row : rows_) stream << csvLine(joined(row, {"vdbstudy " STRATUM_VERSION}));
-    stream.close();
-    if (!stream) throw writeError(path.string());
-    file.commit();
+    std::string text = csvLine(joined(columns_, {"made_by"}));
+    for (const Row& row : rows_) text += csvLine(joined(row, {"vdbstudy " STRATUM_VERSION}));
+    writeFile(path, text);
 }
 
 std::string figure(double value) {

@@ -83,32 +83,30 @@ std::vector<float> valuesOfBeads(const gcode::Toolpath& toolpath, const std::vec
 
 // The functions below give a value of each bead.
 
-std::vector<float> starts(const gcode::Toolpath& toolpath) {
-    std::vector<float> values;
-    values.reserve(toolpath.beads.size());
-    for (const gcode::BeadTiming& timing : toolpath.timing) values.push_back(static_cast<float>(timing.start));
-    if (!values.empty()) return values;
-    double time = 0;
-    for (const gcode::Bead& bead : toolpath.beads) {
-        values.push_back(static_cast<float>(time));
-        time += gcode::beadSeconds(toolpath, bead);
-    }
+// What `value` makes of each bead's number.
+template <typename Value>
+std::vector<float> ofBeads(const gcode::Toolpath& toolpath, const Value& value) {
+    std::vector<float> values(toolpath.beads.size());
+    for (std::size_t n = 0; n < values.size(); ++n) values[n] = static_cast<float>(value(n));
     return values;
+}
+
+std::vector<float> starts(const gcode::Toolpath& toolpath) {
+    if (!toolpath.timing.empty())
+        return ofBeads(toolpath, [&](std::size_t bead) { return toolpath.timing[bead].start; });
+    double time = 0;
+    return ofBeads(toolpath, [&](std::size_t bead) {
+        return std::exchange(time, time + gcode::beadSeconds(toolpath, toolpath.beads[bead]));
+    });
 }
 
 std::vector<float> widths(const gcode::Toolpath& toolpath) {
-    std::vector<float> values;
-    values.reserve(toolpath.beads.size());
-    for (const gcode::Bead& bead : toolpath.beads)
-        values.push_back(static_cast<float>(2 * sectionOf(toolpath, bead).halfWidth()));
-    return values;
+    return ofBeads(toolpath,
+                   [&](std::size_t bead) { return 2 * sectionOf(toolpath, toolpath.beads[bead]).halfWidth(); });
 }
 
 std::vector<float> heights(const gcode::Toolpath& toolpath) {
-    std::vector<float> values;
-    values.reserve(toolpath.beads.size());
-    for (const gcode::Bead& bead : toolpath.beads) values.push_back(toolpath.runOf(bead).height);
-    return values;
+    return ofBeads(toolpath, [&](std::size_t bead) { return toolpath.runOf(toolpath.beads[bead]).height; });
 }
 
 float speedOf(const gcode::Toolpath& toolpath, std::size_t bead) {
@@ -118,32 +116,22 @@ float speedOf(const gcode::Toolpath& toolpath, std::size_t bead) {
 }
 
 std::vector<float> speeds(const gcode::Toolpath& toolpath) {
-    std::vector<float> values;
-    values.reserve(toolpath.beads.size());
-    for (std::size_t bead = 0; bead < toolpath.beads.size(); ++bead) values.push_back(speedOf(toolpath, bead));
-    return values;
+    return ofBeads(toolpath, [&](std::size_t bead) { return speedOf(toolpath, bead); });
 }
 
 std::vector<float> flows(const gcode::Toolpath& toolpath) {
-    std::vector<float> values;
-    values.reserve(toolpath.beads.size());
-    for (std::size_t n = 0; n < toolpath.beads.size(); ++n) {
+    if (!toolpath.flow.empty()) return ofBeads(toolpath, [&](std::size_t bead) { return toolpath.flow[bead].rate; });
+    return ofBeads(toolpath, [&](std::size_t n) {
         const gcode::Bead& bead = toolpath.beads[n];
         const double area =
             gcode::sectionArea(static_cast<double>(bead.width), static_cast<double>(toolpath.runOf(bead).height));
-        values.push_back(toolpath.flow.empty() ? static_cast<float>(area) * speedOf(toolpath, n)
-                                               : toolpath.flow[n].rate);
-    }
-    return values;
+        return static_cast<float>(area) * speedOf(toolpath, n);
+    });
 }
 
 std::vector<float> layerTimes(const gcode::Toolpath& toolpath) {
     const std::vector<double> seconds = gcode::layerSeconds(toolpath);
-    std::vector<float> values;
-    values.reserve(toolpath.beads.size());
-    for (const gcode::Bead& bead : toolpath.beads)
-        values.push_back(static_cast<float>(seconds[toolpath.runOf(bead).layer]));
-    return values;
+    return ofBeads(toolpath, [&](std::size_t bead) { return seconds[toolpath.runOf(toolpath.beads[bead]).layer]; });
 }
 
 std::vector<float> temperatures(const gcode::Toolpath& toolpath) {
