@@ -58,6 +58,7 @@ Viewer::~Viewer() = default;
 void Viewer::load(Input& input) {
     Stopwatch watch;
     try {
+        input.document.requireFiles();
         input.document.update();
         {
             const std::lock_guard lock(input.mutex);

@@ -130,8 +130,8 @@ private:
 TEST(ClipIntersector, OnlyTheCutHasNoGrain) {
     const Ray down{{0.5, 0, 9}, {0, 0, -1}, 0, kInfinity};
     for (const bool cuts : {false, true}) {
-        const auto tracer =
-            makeClipIntersector(std::make_shared<Printed>(), {{{0, 0, 1}, cuts ? 0.5 : 100.0}})->makeTracer();
+        const auto part = makeClipIntersector(std::make_shared<Printed>(), {{{0, 0, 1}, cuts ? 0.5 : 100.0}});
+        const auto tracer = part->makeTracer();
         std::vector<Hit> hits(1);
         tracer->intersectStream({&down, 1}, hits);
         EXPECT_EQ(tracer->grain(hits[0]), glm::dvec3(cuts ? 0 : 1, 0, 0));

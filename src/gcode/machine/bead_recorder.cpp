@@ -43,8 +43,8 @@ void BeadRecorder::tag(const Tag& tag, std::uint32_t line) {
                 warnings_.add(fmt::format("unknown feature name \"{}\"", tag.text.substr(0, 60)), line);
             break;
         case Tag::Kind::height:
-            // Slicers write rounding errors (0.199999); a micrometre is finer than any intended height.
-            next_.height = static_cast<float>(std::max(std::round(tag.height * 1000), 1.0) / 1000);
+            // Slicers write rounding errors (0.199999); layers of 0.15625 mm are intended.
+            next_.height = static_cast<float>(std::max(std::round(tag.height * 1e5), 100.0) / 1e5);
             break;
         case Tag::Kind::layer_change:
             markLayer(tag);

@@ -127,6 +127,7 @@ std::vector<LocalRise> localRises(const Toolpath& toolpath, const std::vector<bo
 namespace {
 
 constexpr double kFallbackHeight = 0.2;  // mm
+constexpr double kLevelsPerMm = 1e5;     // less is rounding
 constexpr double kLeastHeight = 0.01;    // mm; levels closer than this are one level
 constexpr double kMostNominals = 4;      // a larger gap, in layers, is empty space, not a layer
 constexpr double kMostRise = 3;          // mm, the same for files without a layer height
@@ -144,7 +145,7 @@ bool isStrut(const Bead& bead) {
     return rise > 0 && rise * rise > x * x + y * y;
 }
 
-// z levels of level beads in micrometres, ascending. Prime lines (layer 0) are no levels of the part. A strut holds
+// z levels of level beads in parts of a millimetre, ascending. Prime lines (layer 0) are no levels of the part. A strut holds
 // what is laid on its top: its level is `nominal` mm below that.
 std::vector<std::int64_t> levelsOf(const Toolpath& toolpath, std::span<const double> run_z, double nominal) {
     std::vector<std::int64_t> levels;
@@ -152,7 +153,7 @@ std::vector<std::int64_t> levelsOf(const Toolpath& toolpath, std::span<const dou
         const Run& run = toolpath.runOf(bead);
         const bool sloped = std::isnan(run_z[bead.run]);
         if (run.layer == 0 || (sloped && !isStrut(bead))) continue;
-        const std::int64_t z = std::llround((sloped ? bead.z1 - nominal : +bead.z1) * 1000);
+        const std::int64_t z = std::llround((sloped ? bead.z1 - nominal : +bead.z1) * kLevelsPerMm);
         if (levels.empty() || levels.back() != z) levels.push_back(z);
     }
     std::sort(levels.begin(), levels.end());
@@ -162,9 +163,9 @@ std::vector<std::int64_t> levelsOf(const Toolpath& toolpath, std::span<const dou
 
 // The z of the next lower level, or of the bed.
 double levelBelow(const std::vector<std::int64_t>& levels, double z) {
-    const auto ceiling = std::llround((z - kLeastHeight) * 1000);
+    const auto ceiling = std::llround((z - kLeastHeight) * kLevelsPerMm);
     const auto above = std::upper_bound(levels.begin(), levels.end(), ceiling);
-    return above == levels.begin() ? 0 : std::max(0.0, static_cast<double>(*(above - 1)) / 1000);
+    return above == levels.begin() ? 0 : std::max(0.0, static_cast<double>(*(above - 1)) / kLevelsPerMm);
 }
 
 double nearNominal(double height, std::optional<double> nominal) {
@@ -307,7 +308,7 @@ std::vector<double> findHeights(Toolpath& toolpath, std::span<const double> run_
                                             : run_z[k];
     }
     if (!isPlainStack(toolpath, run_z, heights)) {
-        const double first_level = levels.empty() ? 0 : static_cast<double>(levels.front()) / 1000;
+        const double first_level = levels.empty() ? 0 : static_cast<double>(levels.front()) / kLevelsPerMm;
         correctByPlace(toolpath, run_z, nominal, first_level, heights);
         if (!nominal) recountSpiral(toolpath, run_z, heights);
     }

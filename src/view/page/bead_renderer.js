@@ -278,6 +278,13 @@ export class BeadRenderer {
     return coarse;
   }
 
+  /** From here on moving pictures have the beads themselves, no coarse ones. */
+  drawAllBeads() {
+    if (!this.visible.coarse) return;
+    this.visible.standFor(null);
+    this.soughtFrom = null; // the others are to be sought
+  }
+
   /** Draws beads into a target from here on. */
   #use(program, target, values, size = this.size) {
     const gl = this.gl;

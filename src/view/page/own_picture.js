@@ -220,6 +220,7 @@ export class OwnPicture extends EventTarget {
     const renderer = this.#renderer;
     const { quick } = this.#pace;
     const turn = this.#frames++ % 4;
+    if (!quick) renderer.drawAllBeads();
     const seek = (quick || this.#pace.fast) && renderer.hasMoved(camera);
     if (quick) renderer.drawQuick(camera, state, turn === 0, seek);
     else {

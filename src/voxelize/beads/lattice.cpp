@@ -32,7 +32,9 @@ constexpr double kComfortableShare = 0.5;
 // A plane within this fraction of a voxel of a voxel plane is on it.
 constexpr double kOnPlane = 0.01;
 
-std::int64_t micrometres(double mm) { return std::llround(mm * 1e3); }
+// Layers of 0.15625 mm exist; less than ten nanometres is rounding.
+constexpr double kGrainsPerMm = 1e5;
+std::int64_t grains(double mm) { return std::llround(mm * kGrainsPerMm); }
 
 // Of the beads of a selection, in its order, mm.
 std::vector<double> lengthsOf(const gcode::Toolpath& toolpath, std::span<const std::uint32_t> selection) {
@@ -45,13 +47,13 @@ std::vector<double> lengthsOf(const gcode::Toolpath& toolpath, std::span<const s
     return lengths;
 }
 
-// Printed length by a measure in whole micrometres.
+// Printed length by a measure in whole grains.
 class Histogram {
 public:
     void add(double mm, double length) {
         // Neighbours in print order nearly always agree.
         if (mm != last_) {
-            sum_ = &sums_[micrometres(mm)];
+            sum_ = &sums_[grains(mm)];
             last_ = mm;
         }
         *sum_ += length;
@@ -157,7 +159,7 @@ Lattice chooseLattice(const gcode::Toolpath& toolpath, std::span<const std::uint
     Histogram by_height;
     for (std::size_t n = 0; n < selection.size(); ++n)
         by_height.add(toolpath.runOf(toolpath.beads[selection[n]]).height, lengths[n]);
-    const std::int64_t height_um = by_height.longest();
+    const std::int64_t usual_height = by_height.longest();
     Histogram by_plane;
     double last_height = std::numeric_limits<double>::quiet_NaN();
     bool of_most = false;  // of the height of which most is printed
@@ -165,7 +167,7 @@ Lattice chooseLattice(const gcode::Toolpath& toolpath, std::span<const std::uint
         const gcode::Bead& bead = toolpath.beads[selection[n]];
         const double height = toolpath.runOf(bead).height;
         if (height != last_height) {
-            of_most = micrometres(height) == height_um;
+            of_most = grains(height) == usual_height;
             last_height = height;
         }
         if (of_most && bead.z0 == bead.z1) by_plane.add(bead.z0 - height, lengths[n]);
@@ -173,7 +175,7 @@ Lattice chooseLattice(const gcode::Toolpath& toolpath, std::span<const std::uint
 
     Lattice lattice;
     lattice.half_width = request.half_width;
-    lattice.layer_height = static_cast<double>(height_um) * 1e-3;
+    lattice.layer_height = static_cast<double>(usual_height) / kGrainsPerMm;
     if (request.voxel_size) {
         lattice.voxel_size = *request.voxel_size;
         lattice.reason = "as asked";
@@ -189,7 +191,7 @@ Lattice chooseLattice(const gcode::Toolpath& toolpath, std::span<const std::uint
     }
     refuseUnfit(lattice, bounds);
     if (!by_plane.empty()) {
-        const double plane = static_cast<double>(by_plane.longest()) * 1e-3;
+        const double plane = static_cast<double>(by_plane.longest()) / kGrainsPerMm;
         lattice.origin_z = plane - std::floor(plane / lattice.voxel_size + kOnPlane) * lattice.voxel_size;
         // See the head of lattice.h.
         if (lattice.voxel_size > (1 - kOnPlane) * lattice.layer_height) {

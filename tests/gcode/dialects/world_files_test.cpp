@@ -5,6 +5,7 @@
 #include "gcode/text/trade.h"
 #include "gcode/toolpath/stated.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <initializer_list>
@@ -95,6 +96,17 @@ TEST(WorldFiles, ALayerIsCountedOnce) {
         "M83\nG1 X0 Y0 Z0.2\nG1 X20 E1\nG1 X0 Y5 Z0.20001\nG1 X20 E1\nG1 X0 Y9 Z0.2\nG1 X20 E1\nG1 X0 Y0 Z0.4\nG1 X20 "
         "E1\n");
     EXPECT_EQ(near.layer_count, 2U);
+}
+
+// Layers of 3/16 mm, as an imperial screw has them, with and without a tag.
+TEST(WorldFiles, HeightsAreNotRoundedToMicrometres) {
+    std::string text = "M83\n";
+    for (int n = 1; n <= 40; ++n) {
+        text += fmt::format("G1 X0 Y0 Z{:.4f}\nG1 X20 E1\n", 0.1875 * n);
+    }
+    for (const gcode::Run& run : readProgram(text).runs) EXPECT_NEAR(run.height, 0.1875, 1e-6);
+    const Toolpath tagged = readProgram("M83\n;LAYER_CHANGE\n;HEIGHT:0.15625\nG1 X0 Y0 Z0.15625\nG1 X20 E1\n");
+    EXPECT_NEAR(tagged.runs.front().height, 0.15625, 1e-7);
 }
 
 TEST(WorldFiles, AMillThatTurnsItsWorkIsNoPrinter) {

@@ -48,6 +48,17 @@ TEST(Lattice, OriginFollowsTheMajorityPlane) {
     EXPECT_NEAR(lattice.aligned_share, 19.0 / 20, 1e-9);
 }
 
+// A hundred layers of 5/32 mm: a height rounded to micrometres would miss the upper ones.
+TEST(Lattice, HeightsNeedNotBeWholeMicrometres) {
+    LatticeRequest request;
+    request.voxels_per_layer = 4;
+    for (const double height : {0.15625, 0.1875, 0.1778}) {
+        const Lattice lattice = choose(stack(height, height, 100), request);
+        EXPECT_NEAR(lattice.layer_height, height, 1e-7);
+        EXPECT_DOUBLE_EQ(lattice.aligned_share, 1) << height;
+    }
+}
+
 TEST(Lattice, SaysWhenNothingAligns) { EXPECT_LT(choose(stack(0.2, 0.2, 20), voxel(0.07)).aligned_share, 0.2); }
 
 TEST(Lattice, ChoosesByItselfBetweenTwoAndFourVoxelsALayer) {
