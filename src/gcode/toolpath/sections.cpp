@@ -145,8 +145,8 @@ bool isStrut(const Bead& bead) {
     return rise > 0 && rise * rise > x * x + y * y;
 }
 
-// z levels of level beads in parts of a millimetre, ascending. Prime lines (layer 0) are no levels of the part. A strut holds
-// what is laid on its top: its level is `nominal` mm below that.
+// z levels of level beads in parts of a millimetre, ascending. Prime lines (layer 0) are no levels of the part. A strut
+// holds what is laid on its top: its level is `nominal` mm below that.
 std::vector<std::int64_t> levelsOf(const Toolpath& toolpath, std::span<const double> run_z, double nominal) {
     std::vector<std::int64_t> levels;
     for (const Bead& bead : toolpath.beads) {
