@@ -188,7 +188,7 @@ void addReadingOptions(CLI::App& app, voxelize::PrintOptions& options) {
     app.add_option(
            "--planner", options.read.corner_rule,
            "How print times are planned: auto, jerk, slicer-jerk, plan-jerk, junction-deviation, corner-velocity, "
-           "marlin-jerk, reprap-jerk, programmed")
+           "marlin-jerk, reprap-jerk, programmed, bambu-jerk")
         ->transform(enumeration(gcode::kCornerRules))
         ->type_name("RULE")
         ->group(reading);

@@ -203,7 +203,8 @@ def read(
     e_mode: Literal["auto", "absolute", "relative"] | None = ...,
     firmware: Literal["auto", "marlin", "klipper", "reprap"] | None = ...,
     planner: Literal[
-        "auto", "jerk", "slicer-jerk", "plan-jerk", "junction-deviation", "corner-velocity", "marlin-jerk", "reprap-jerk"
+        "auto", "jerk", "slicer-jerk", "plan-jerk", "junction-deviation", "corner-velocity", "marlin-jerk", "reprap-jerk",
+        "programmed", "bambu-jerk"
     ] | None = ...,
     printer: str | PathLike[str] | None = ..., beads: Literal["capsule", "grooves", "settled"] | None = ...,
     section: str | None = ..., flow: float | None = ..., flow_lag: float | None = ...,
@@ -282,7 +283,8 @@ def render(
     e_mode: Literal["auto", "absolute", "relative"] | None = ...,
     firmware: Literal["auto", "marlin", "klipper", "reprap"] | None = ...,
     planner: Literal[
-        "auto", "jerk", "slicer-jerk", "plan-jerk", "junction-deviation", "corner-velocity", "marlin-jerk", "reprap-jerk"
+        "auto", "jerk", "slicer-jerk", "plan-jerk", "junction-deviation", "corner-velocity", "marlin-jerk", "reprap-jerk",
+        "programmed", "bambu-jerk"
     ] | None = ...,
     printer: str | PathLike[str] | None = ..., beads: Literal["capsule", "grooves", "settled"] | None = ...,
     section: str | None = ..., flow: float | None = ..., flow_lag: float | None = ...,

@@ -14,15 +14,16 @@ inline constexpr Names<Firmware, 4> kFirmwares = {{{"auto", Firmware::automatic}
                                                    {"klipper", Firmware::klipper},
                                                    {"reprap", Firmware::reprap}}};
 
-inline constexpr Names<CornerRule, 9> kCornerRules = {{{"auto", CornerRule::automatic},
-                                                       {"jerk", CornerRule::jerk},
-                                                       {"slicer-jerk", CornerRule::slicer_jerk},
-                                                       {"plan-jerk", CornerRule::plan_jerk},
-                                                       {"junction-deviation", CornerRule::junction_deviation},
-                                                       {"corner-velocity", CornerRule::corner_velocity},
-                                                       {"marlin-jerk", CornerRule::marlin_jerk},
-                                                       {"reprap-jerk", CornerRule::reprap_jerk},
-                                                       {"programmed", CornerRule::programmed}}};
+inline constexpr Names<CornerRule, 10> kCornerRules = {{{"auto", CornerRule::automatic},
+                                                        {"jerk", CornerRule::jerk},
+                                                        {"slicer-jerk", CornerRule::slicer_jerk},
+                                                        {"plan-jerk", CornerRule::plan_jerk},
+                                                        {"junction-deviation", CornerRule::junction_deviation},
+                                                        {"corner-velocity", CornerRule::corner_velocity},
+                                                        {"marlin-jerk", CornerRule::marlin_jerk},
+                                                        {"reprap-jerk", CornerRule::reprap_jerk},
+                                                        {"programmed", CornerRule::programmed},
+                                                        {"bambu-jerk", CornerRule::bambu_jerk}}};
 
 inline constexpr Names<DepositModel::Beads, 3> kBeadModels = {{{"capsule", DepositModel::Beads::capsule},
                                                                {"grooves", DepositModel::Beads::grooves},

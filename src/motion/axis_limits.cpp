@@ -15,7 +15,7 @@ constexpr double kSlowestRepRap = 0.5;            // mm/s: RepRapFirmware's leas
 // The limits of single axes hold for the share that each has in the move.
 void limitShares(const MachineLimits& limits, Segment& segment) {
     for (std::size_t axis = 0; axis < gcode::kMotionAxes; ++axis) {
-        const double share = std::abs(segment.direction[axis]);
+        const double share = segment.share(axis);
         if (share * segment.speed > limits.speed[axis]) segment.speed = limits.speed[axis] / share;
         if (share * segment.acceleration > limits.acceleration[axis])
             segment.acceleration = limits.acceleration[axis] / share;

@@ -16,6 +16,9 @@ void ExactLookAhead::add(const Segment& segment, const gcode::MachineLimits& lim
     limits_ = limits;
     Pending next;
     next.segment = segment;
+    if (limits.rule == gcode::CornerRule::bambu_jerk)
+        next.segment.speed = std::min(
+            next.segment.speed, curveSpeed(pending_.empty() ? nullptr : &pending_.back().segment, segment, limits));
     limitByAxes(limits, next.segment);
     next.gain = 2 * next.segment.acceleration * next.segment.length;
     if (pending_.empty()) {

@@ -1,6 +1,7 @@
 #include "motion/print_times.h"
 
 #include "gcode/option_names.h"
+#include "gcode/slicer/settings.h"
 #include "gcode/summary.h"
 #include "motion/clock_fit.h"
 
@@ -94,7 +95,8 @@ Estimate estimateOf(const PrintTimes& times, const gcode::Toolpath& toolpath) {
     if (toolpath.slicer.starts_with("Kiri:Moto")) return {CornerRule::programmed, 1.5};
     const bool states_jerk = times.limits[ofAxis(gcode::Limit::jerk, 0)].kind == gcode::LimitOrigin::Kind::setting;
     if (times.limits.rule != CornerRule::corner_velocity || !states_jerk) return {};
-    return {toolpath.stated.programs_left_out ? CornerRule::plan_jerk : CornerRule::slicer_jerk};
+    if (toolpath.stated.programs_left_out) return {CornerRule::plan_jerk};
+    return {gcode::estimatesByVelocity(toolpath.slicer) ? CornerRule::bambu_jerk : CornerRule::slicer_jerk};
 }
 
 }  // namespace

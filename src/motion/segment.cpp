@@ -59,6 +59,27 @@ double chordsOf(const gcode::Move& move, double radius, const gcode::MachineLimi
     return std::clamp(chords, 1.0, kMostChords);
 }
 
+// BambuStudio's GCodeProcessor (process_G2_G3) has an arc in one piece, with its tangents at both ends.
+void takeWholeArc(const gcode::Move& move, Segment segment, const std::function<void(const Segment&)>& take) {
+    const double radius = std::hypot(move.center.x, move.center.y);
+    const double flat = radius * std::abs(move.sweep);
+    segment.travels = true;
+    segment.whole_arc = true;
+    segment.radius = radius;
+    segment.length = std::hypot(flat, move.delta[2]);
+    if (!(segment.length > kNoMotion) || !(radius > 0)) return;
+    const double share = flat / segment.length;
+    const double turn = move.sweep < 0 ? -1 : 1;
+    // Square to the way from the center, which is minus `center` at the start.
+    const double x = turn * move.center.y / radius;
+    const double y = -turn * move.center.x / radius;
+    const double cosine = std::cos(move.sweep);
+    const double sine = std::sin(move.sweep);
+    segment.direction = {share * x, share * y, move.delta[2] / segment.length, move.delta[3] / segment.length};
+    segment.exit = {cosine * x - sine * y, sine * x + cosine * y};
+    take(segment);
+}
+
 void cutArc(const gcode::Move& move, const gcode::MachineLimits& limits, Segment segment,
             const std::function<void(const Segment&)>& take) {
     const auto& d = move.delta;
@@ -85,6 +106,7 @@ void cutArc(const gcode::Move& move, const gcode::MachineLimits& limits, Segment
         if (!(segment.length > kNoMotion)) continue;
         for (std::size_t axis = 0; axis < gcode::kMotionAxes; ++axis)
             segment.direction[axis] = step[axis] / segment.length;
+        segment.exit = {segment.direction[0], segment.direction[1]};
         segment.arc_rest = radius * std::abs(move.sweep) * (1 - i / chords);
         take(segment);
     }
@@ -103,12 +125,14 @@ void cutMove(const gcode::Move& move, const gcode::MachineLimits& limits,
     segment.pressure_advance = limits.pressure_advance;
     segment.speed = segment.asked = move.speed;
     segment.start = move.start;
+    if (move.sweep != 0 && limits.rule == gcode::CornerRule::bambu_jerk) return takeWholeArc(move, segment, take);
     if (move.sweep != 0) return cutArc(move, limits, segment, take);
     const double path = std::sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
     segment.travels = path > kNoMotion;
     segment.length = segment.travels ? path : std::abs(d[3]);
     if (!(segment.length > kNoMotion)) return;
     for (std::size_t axis = 0; axis < gcode::kMotionAxes; ++axis) segment.direction[axis] = d[axis] / segment.length;
+    segment.exit = {segment.direction[0], segment.direction[1]};
     take(segment);
 }
 

@@ -4,6 +4,8 @@
 #include "gcode/printer/motion.h"
 
 #include <array>
+#include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 
@@ -20,10 +22,17 @@ struct Segment {
     double pressure_advance = 0;                         ///< s, in force
     double radius = 0;                                   ///< mm, of the arc that this is a chord of; 0: none
     double arc_rest = 0;                                 ///< mm of that arc after this chord
+    bool whole_arc = false;                              ///< it is the arc: `direction` is at its start
+    std::array<double, 2> exit{};                        ///< x and y of the direction at its end
     bool travels = false;                                ///< x, y or z moves; else E alone
     std::uint32_t bead = gcode::Move::kNoBead;
     std::uint32_t line = 0;
     std::uint32_t travel = gcode::Move::kNoBead;  ///< Move::travel
+
+    /// Of the length, by axis; of a whole arc, x and y both have all that is in the plan.
+    double share(std::size_t axis) const {
+        return whole_arc && axis < 2 ? std::hypot(direction[0], direction[1]) : std::abs(direction[axis]);
+    }
 };
 
 /// Calls take() for the segments of a move, in order; arcs are cut into chords as the rule's firmware does. Speed and

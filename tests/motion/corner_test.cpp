@@ -59,6 +59,38 @@ TEST(Corner, SlicersTakeWhatWasAskedOfAMoveThatAnAxisHoldsBack) {
     EXPECT_NEAR(cornerSpeed(lift, along(0, 150), limits), 150 * 0.2 / 12, 1e-9);
 }
 
+// BambuStudio's numbers by hand: x loses 100, y gains 100; x alone takes a factor of 9/100, which holds for what is
+// left of y's jump as well.
+TEST(Corner, BambuStudioTakesTheAxesOneAfterTheOther) {
+    MachineLimits limits = with(CornerRule::bambu_jerk);
+    limits.jerk = {9, 9, 3, 2.5};
+    Segment from = along(0, 100);
+    from.exit = {1, 0};
+    EXPECT_NEAR(cornerSpeed(from, along(kRight, 100), limits), 9, 1e-9);
+    // From the tangent of an arc's end to a line along it there is no corner.
+    from.whole_arc = true;
+    from.direction = {0, 1, 0, 0};
+    EXPECT_NEAR(cornerSpeed(from, along(0, 80), limits), 80, 1e-9);
+}
+
+// v^2 = a r, of an arc and of a polygon about as large a circle.
+TEST(Corner, CurvesHaveACentripetalAcceleration) {
+    MachineLimits limits = with(CornerRule::bambu_jerk);
+    limits.printing = 5000;
+    Segment arc = along(0, 300);
+    arc.whole_arc = true;
+    arc.radius = 2;
+    EXPECT_NEAR(curveSpeed(nullptr, arc, limits), 100, 1e-9);
+    constexpr double kTurn = 0.1;
+    Segment before = along(0, 300);
+    before.exit = {1, 0};
+    Segment after = along(kTurn, 300);
+    after.length = 2 * 2 * std::sin(kTurn / 2);  // a chord of that circle
+    EXPECT_NEAR(curveSpeed(&before, after, limits), 100, 1e-9);
+    EXPECT_EQ(curveSpeed(&before, along(0, 300), limits), MachineLimits::kNone);       // straight on
+    EXPECT_EQ(curveSpeed(&before, along(kRight, 300), limits), MachineLimits::kNone);  // a corner
+}
+
 TEST(Corner, PlanJerkCountsTheVectorsJump) {
     MachineLimits limits = with(CornerRule::plan_jerk);
     limits.jerk = {20, 20, 0.4, 5};

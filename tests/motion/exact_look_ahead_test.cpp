@@ -27,7 +27,13 @@ Dense denseOf(const Motions& program) {
     Dense dense;
     for (const gcode::Move& move : program.moves)
         cutMove(move, limits, [&](const Segment& piece) { dense.segments.push_back(piece); });
-    for (Segment& segment : dense.segments) limitByAxes(limits, segment);
+    for (std::size_t i = 0; i < dense.segments.size(); ++i) {
+        Segment& segment = dense.segments[i];
+        if (limits.rule == CornerRule::bambu_jerk)
+            segment.speed =
+                std::min(segment.speed, curveSpeed(i > 0 ? &dense.segments[i - 1] : nullptr, segment, limits));
+        limitByAxes(limits, segment);
+    }
     const auto& s = dense.segments;
     std::vector<double> gains;
     for (std::size_t i = 0; i < s.size(); ++i) {
@@ -50,8 +56,8 @@ Dense denseOf(const Motions& program) {
 
 class ExactOfRule : public testing::TestWithParam<CornerRule> {};
 INSTANTIATE_TEST_SUITE_P(All, ExactOfRule,
-                         testing::Values(CornerRule::jerk, CornerRule::slicer_jerk, CornerRule::plan_jerk,
-                                         CornerRule::reprap_jerk));
+                         testing::Values(CornerRule::jerk, CornerRule::slicer_jerk, CornerRule::bambu_jerk,
+                                         CornerRule::plan_jerk, CornerRule::reprap_jerk));
 
 TEST_P(ExactOfRule, StreamsWhatAPassOverTheWholeProgramGives) {
     for (unsigned seed = 1; seed <= 5; ++seed) {

@@ -12,9 +12,10 @@ namespace {
 using gcode::CornerRule;
 class PlannerOfRule : public testing::TestWithParam<CornerRule> {};
 INSTANTIATE_TEST_SUITE_P(All, PlannerOfRule,
-                         testing::Values(CornerRule::jerk, CornerRule::slicer_jerk, CornerRule::plan_jerk,
-                                         CornerRule::junction_deviation, CornerRule::corner_velocity,
-                                         CornerRule::marlin_jerk, CornerRule::reprap_jerk));
+                         testing::Values(CornerRule::jerk, CornerRule::slicer_jerk, CornerRule::bambu_jerk,
+                                         CornerRule::plan_jerk, CornerRule::junction_deviation,
+                                         CornerRule::corner_velocity, CornerRule::marlin_jerk,
+                                         CornerRule::reprap_jerk));
 
 TEST_P(PlannerOfRule, SurvivesWhatNoMachineDoes) {
     for (const double acceleration : {1e-2, 1.0, 1e7})

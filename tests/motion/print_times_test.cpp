@@ -278,9 +278,9 @@ class Estimate : public testing::TestWithParam<Stated> {};
 INSTANTIATE_TEST_SUITE_P(Corpus, Estimate,
                          testing::Values(Stated{"gcode/preprocess_cancellation-superslicer.gcode", 439, 0.006},
                                          Stated{"gcode/slicer-meta-orca_flashforge.gcode.3mf", 433, 0.02},
-                                         Stated{"gcode/slicer-meta-orca_twocolors.gcode.3mf", 2803, 0.02},
+                                         Stated{"gcode/slicer-meta-orca_twocolors.gcode.3mf", 2803, 0.001},
                                          Stated{"gcode/slicer-meta-flashstudio_2color.gcode.3mf", 1698, 0.03},
-                                         Stated{"gcode/orca2flashforge-test.gcode.gz", 2228, 0.02},
+                                         Stated{"gcode/orca2flashforge-test.gcode.gz", 2228, 0.002},
                                          Stated{"gcode/preprocess_cancellation-kirimoto.gcode", 806, 0.03},
                                          Stated{"gcode/filaswitch-mc_testmodel1_S3D.gcode", 2580, 0.12}));
 

@@ -190,7 +190,8 @@ void MotionRecorder::command(const Command& command, double unit, std::uint32_t 
             return runRetraction(
                 {retract_.length + recover_.length, recover_.speed > 0 ? recover_.speed : retract_.speed}, 1, line);
         }
-        if (command.code == 28 && limits_.rule == CornerRule::slicer_jerk) return home(command, line);
+        const bool by_slicer = limits_.rule == CornerRule::slicer_jerk || limits_.rule == CornerRule::bambu_jerk;
+        if (command.code == 28 && by_slicer) return home(command, line);
         if (rests(command)) sink_.wait(0);
         return;
     }

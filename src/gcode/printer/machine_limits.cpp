@@ -77,7 +77,8 @@ private:
         if (klipper_ || flavor_ == "klipper") return CornerRule::corner_velocity;
         if (isPlannedBySlicer()) return slicer_.limits->rule;
         if (deviation_) return CornerRule::junction_deviation;
-        return settings_.states_jerk ? CornerRule::slicer_jerk : CornerRule::jerk;
+        if (!settings_.states_jerk) return CornerRule::jerk;
+        return slicer_.by_velocity ? CornerRule::bambu_jerk : CornerRule::slicer_jerk;
     }
 
     bool isStated(Limit limit) const { return settings_.origins[limit].kind != LimitOrigin::Kind::assumed; }

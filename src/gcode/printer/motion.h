@@ -20,13 +20,14 @@ constexpr std::size_t kMotionAxes = 4;
 enum class CornerRule : std::uint8_t {
     automatic,           ///< chosen from the file and the printer: readMachineSettings()
     jerk,                ///< a jump of speed by axis (Marlin 1.1 and legacy, Prusa MK3)
-    slicer_jerk,         ///< the same as PrusaSlicer, SuperSlicer, Orca and Bambu Studio estimate it
+    slicer_jerk,         ///< the same as PrusaSlicer and SuperSlicer estimate it
     plan_jerk,           ///< one jump of the speed's vector in the plane (Marlin 1.0, CuraEngine's estimate)
     junction_deviation,  ///< Marlin 2, Grbl
     corner_velocity,     ///< Klipper's square corner velocity
     marlin_jerk,         ///< a jump of speed by axis as Marlin 2 has it ("classic jerk")
     reprap_jerk,         ///< RepRapFirmware 3's jump of speed by axis (M566)
     programmed,          ///< no acceleration: Simplify3D's and Kiri:Moto's estimates
+    bambu_jerk,          ///< a jump of the velocity, arcs in one piece: BambuStudio 2's and OrcaSlicer 2's estimate
 };
 
 /// The firmware whose way of dividing arcs into straight pieces is known.

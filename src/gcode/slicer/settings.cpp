@@ -116,6 +116,7 @@ public:
         if (settings.slicer.empty() && cura_head_ == kCuraHead) name("Cura");
         takeColors();
         takeProfile();
+        settings.slicer_limits.by_velocity = estimatesByVelocity(settings.slicer);
         settings.slicer_limits.ignores_settings = flavor_ != "marlin" && isOldPrusaSlicer(settings.slicer);
         return std::move(settings);
     }
@@ -239,8 +240,6 @@ private:
             name(upTo(upTo(text, " on "), " (Build"));
         } else if (text.starts_with("<IceSL")) {
             name("IceSL");
-        } else if (takePrefix(text, "Generated with: ")) {  // REALvision
-            name(text);
         } else if (takePrefix(text, "nozzle_diameter_mm_0 :")) {  // IceSL
             settings.nozzle_diameter = positiveNumber(text, 100);
         } else if (takePrefix(text, "Generated with ") || takePrefix(text, "GCode created with ") ||
@@ -248,7 +247,8 @@ private:
             name(upTo(text, " - "));
         } else if (takePrefix(text, "Sliced by ")) {
             name(upTo(text, ","));
-        } else if (takePrefix(text, "GENERATOR.NAME:")) {
+        } else if (takePrefix(text, "Generated with: ") ||  // REALvision
+                   takePrefix(text, "GENERATOR.NAME:")) {
             name(text);
         } else if (takePrefix(text, "GENERATOR.VERSION:")) {
             if (!settings.slicer.empty() && settings.slicer.find(' ') == std::string::npos)
@@ -292,6 +292,10 @@ private:
 };
 
 }  // namespace
+
+bool estimatesByVelocity(std::string_view slicer) {
+    return slicer.starts_with("OrcaSlicer 2") || slicer.starts_with("BambuStudio 02");
+}
 
 std::optional<std::vector<Point>> parseToolOffsets(std::string_view text) {
     std::vector<Point> values;

@@ -48,6 +48,10 @@ std::optional<std::vector<Point>> parseToolOffsets(std::string_view text);
 /// The same for a user's text. Throws UsageError, which begins with `option`.
 std::vector<Point> toolOffsetsOf(const std::string& text, const std::string& option);
 
+/// Whether a slicer, by the name that it gives itself, estimates by CornerRule::bambu_jerk: OrcaSlicer and BambuStudio
+/// from 2 on. Times of older ones, and of what is made of them, are nearer by slicer_jerk.
+bool estimatesByVelocity(std::string_view slicer);
+
 /// Reads the comments in the first and the last part of the bytes, scans the way of extruding, and checks for a
 /// truncated end. Never throws for invalid contents.
 Settings readSettings(std::string_view bytes);
