@@ -33,7 +33,7 @@ struct MachineSettings {
 /// By what a slicer is known to plan its times, whatever the printer's own limits.
 struct SlicerLimits {
     std::optional<MachineLimits> limits;  ///< with the rule; of its definition of the machine
-    std::string machine;    ///< "definition of creality_ender3": where they are from; empty: no machine is named
+    std::string machine;       ///< "definition of creality_ender3": where they are from; empty: no machine is named
     bool by_velocity = false;  ///< where it estimates by jerk: CornerRule::bambu_jerk
     bool ignores_settings = false;  ///< the machine_max_ lines that it writes don't count
 };
