@@ -43,8 +43,7 @@ void BeadRecorder::tag(const Tag& tag, std::uint32_t line) {
                 warnings_.add(fmt::format("unknown feature name \"{}\"", tag.text.substr(0, 60)), line);
             break;
         case Tag::Kind::height:
-            // Slicers write rounding errors (0.199999); layers of 0.15625 mm are intended.
-            next_.height = static_cast<float>(std::max(std::round(tag.height * 1e5), 100.0) / 1e5);
+            next_.height = static_cast<float>(intendedHeight(tag.height));
             break;
         case Tag::Kind::layer_change:
             markLayer(tag);
@@ -112,6 +111,13 @@ void BeadRecorder::startPart() {
     if (layer_marks_ || part_started_) return;
     part_started_ = true;
     if (toolpath_.beads.size() <= kMostPrimeBeads) restartLayers();
+}
+
+// Slicers write rounding errors (0.199999, 0.20001); layers of 0.15625 mm are intended.
+double BeadRecorder::intendedHeight(double mm) {
+    constexpr double kRounding = 3e-5;  // mm
+    const double micrometres = std::round(mm * 1e3) / 1e3;
+    return std::max(std::abs(mm - micrometres) < kRounding ? micrometres : std::round(mm * 1e5) / 1e5, 1e-3);
 }
 
 void BeadRecorder::markLayer(const Tag& mark) {

@@ -59,6 +59,7 @@ public:
 
 private:
     void changeColor(std::uint8_t tool, std::optional<Rgb> color, std::uint32_t line);
+    static double intendedHeight(double mm);
     void markLayer(const Tag& tag);
     void markOnRaft(bool raft);
     void restartLayers();

@@ -107,6 +107,8 @@ TEST(WorldFiles, HeightsAreNotRoundedToMicrometres) {
     for (const gcode::Run& run : readProgram(text).runs) EXPECT_NEAR(run.height, 0.1875, 1e-6);
     const Toolpath tagged = readProgram("M83\n;LAYER_CHANGE\n;HEIGHT:0.15625\nG1 X0 Y0 Z0.15625\nG1 X20 E1\n");
     EXPECT_NEAR(tagged.runs.front().height, 0.15625, 1e-7);
+    const Toolpath rounded = readProgram("M83\n;LAYER_CHANGE\n;HEIGHT:0.20001\nG1 X0 Y0 Z0.2\nG1 X20 E1\n");
+    EXPECT_EQ(rounded.runs.front().height, 0.2F);
 }
 
 TEST(WorldFiles, AMillThatTurnsItsWorkIsNoPrinter) {
