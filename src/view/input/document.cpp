@@ -99,6 +99,7 @@ void Document::update() {
         GivenInput now = given_.again();
         now.again = given_.again;
         given_ = std::move(now);
+        requireFiles();  // it may name others
     }
     outdated_ = false;
 }

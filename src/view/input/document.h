@@ -26,7 +26,8 @@ public:
 
     /// Files whose change makes it another: the input and what its scene names.
     std::vector<std::string> files() const;
-    /// Reads the scene again that was given, if its files have changed. Throws InputError.
+    /// Reads the scene again that was given, if its files have changed. Throws InputError, also as requireFiles() does
+    /// for files that it names now.
     void update();
     /// Throws InputError if one of them is a pipe or a device: nobody may ever write into that.
     void requireFiles() const;

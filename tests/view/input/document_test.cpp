@@ -1,9 +1,11 @@
 #include "view/input/document.h"
 
 #include "base/error.h"
+#include "scratch_folder.h"
 #include "view/given_tile.h"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <algorithm>
 #include <string>
@@ -44,6 +46,23 @@ TEST(Document, ABadSceneIsReadWhenItIsGood) {
     EXPECT_EQ(document.files(), std::vector<std::string>{"scene.json"});
     document.update();
     EXPECT_EQ(document.given().objects.size(), 1U);
+}
+
+// Reading it would wait for a writer that never comes.
+TEST(Document, ASceneThatNamesAPipeIsRefused) {
+    const test::ScratchFolder folder;
+    const std::string pipe = (folder / "part.gcode").string();
+    ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+    GivenInput given;
+    given.path = "scene.json";
+    given.again = [&pipe] {
+        GivenInput now = test::givenTile(0.2);
+        now.objects.front().vdb = pipe;
+        return now;
+    };
+    Document document(given);
+    EXPECT_THROW(document.update(), InputError);
+    EXPECT_THROW(document.update(), InputError);
 }
 
 TEST(Document, DependsOnAllFilesThatItNames) {
