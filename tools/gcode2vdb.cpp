@@ -133,7 +133,7 @@ void addOptions(CLI::App& app, tools::ConvertCommand& o) {
                    "inputs; - is a .vdb on standard output, -.stl a mesh (default: a .vdb named after the input, here; "
                    "of several inputs beside each)")
         ->type_name("FILE|DIR");
-    tools::addPrintOptions(app, o.print);
+    tools::addPrintOptions(app);
     const char* lattice = "Lattice";
     app.add_option("--unit", o.unit, "World unit of the .vdb: mm, cm or m (default mm)")
         ->check(tools::oneOf({"mm", "cm", "m"}))
@@ -282,6 +282,8 @@ int main(int argc, char** argv) {
     tools::ConvertCommand options;
     addOptions(app, options);
     return tools::runTool(app, argc, argv, [&] {
+        tools::CommandSource source(app);
+        tools::readPrintOptions(source, options.print);
         if (!options.color.empty())
             options.print.read.filament_colors = assemble::toolColorsOf(options.color, "--color").colors;
         if (app.count("--thumbnail") > 0) {

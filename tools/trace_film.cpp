@@ -50,7 +50,8 @@ void refuseOthers(const TraceCommand& o) {
     if (o.each || o.inputs.size() > 1) refuse("several inputs", "make several films; call vdbtrace for each");
     if (gcode::isStream(o.inputs.front()))
         refuse(o.inputs.front(), "is a stream, which is read once, and a film must know it again; name a file");
-    if (o.prints.series > 1) refuse("--progress-series", "makes pictures; write --grow filament, or --grow time");
+    if (o.tracing.prints.series > 1)
+        refuse("--progress-series", "makes pictures; write --grow filament, or --grow time");
     if (!o.render.aovs.empty()) refuse("--aov", "is for .exr pictures");
     if (!o.render.checkpoint.empty())
         refuse("--checkpoint", "is for one picture; a film keeps its finished frames by itself");

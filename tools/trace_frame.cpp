@@ -195,7 +195,7 @@ Json renderFrame(const TraceCommand& o, const Frame& frame, const assemble::Trac
         fmt::format("  {}: {}{} x {} at {:.4g} spp, {} rays, {:.1f} Mrays/s, {:.2f} s in all", output, piece,
                     o.render.width, o.render.height, result.mean_spp, humanCount(static_cast<double>(rays.total())),
                     static_cast<double>(rays.total()) / seconds.render * 1e-6, seconds.total));
-    if (shown && !o.exposure_given && o.tone.exposure != 0.0)
+    if (shown && !o.exposure && o.tone.exposure != 0.0)
         say(o.common,
             fmt::format("  exposure {:+.2f} stops, found from the light; --exposure sets it", o.tone.exposure));
     return reportOf(o, frame, output, objects, scene, result, seconds, threads);
@@ -205,19 +205,9 @@ namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
 assemble::TracingOptions readingOf(const TraceCommand& o) {
-    assemble::TracingOptions reading;
-    reading.march = assemble::parseMarchMethod(o.march);
-    reading.values = o.values;
-    reading.clip = o.clip_planes;
-    reading.prints = o.prints;
-    reading.finishes = o.finishes;
+    assemble::TracingOptions reading = o.tracing;
     reading.hash = !o.render.checkpoint.empty();
     reading.events = terminalEvents(o.common.quiet);
-    if (!o.brick_cache.empty()) {
-        if (o.march != "auto" && o.march != "brick")
-            throw UsageError(fmt::format("--brick-cache: --march {} has no bricks", o.march));
-        reading.brick_cache = static_cast<std::size_t>(std::min(voxelize::parseSize(o.brick_cache), 1e18));
-    }
     return assemble::tracingFor(o.scene, o.render, std::move(reading));
 }
 
@@ -233,7 +223,7 @@ std::vector<assemble::ObjectOptions> objectsOf(const TraceCommand& o, std::size_
 }
 
 assemble::StageOptions stageOptionsOf(const TraceCommand& o) {
-    return {o.scene, o.render, o.frame == "all", !o.linear && !o.exposure_given};
+    return {o.scene, o.render, o.frame_all, !o.linear && !o.exposure};
 }
 
 namespace {
@@ -270,7 +260,7 @@ public:
         for (std::size_t k = n * each; k < (n + 1) * each; ++k) needed = needed || makes(o_, k);
         if (!needed) return;
         assemble::TracedObjects objects = assemble::readTracedObjects(objectsOf(o_, n), reading_);
-        if (o_.prints.series > 1 && !assemble::growingPrint(objects))
+        if (o_.tracing.prints.series > 1 && !assemble::growingPrint(objects))
             throw UsageError("--progress-series needs G-code: level sets don't know what was printed when");
         for (const std::string& line : objects.lines) say(o_.common, line);
         if (o_.legend && objects.legends.empty()) say(o_.common, "  no legend: nothing is coloured by an attribute");

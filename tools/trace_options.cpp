@@ -3,24 +3,23 @@
 
 #include "choices.h"
 #include "color_options.h"
+#include "command_source.h"
 #include "number_list.h"
+#include "print_options.h"
 
 #include "assemble/file/file_facts.h"
 #include "assemble/file/input_files.h"
-#include "assemble/file/scene_file.h"
-#include "assemble/print/print_colors.h"
+#include "assemble/scene_file.h"
 #include "base/checksum.h"
 #include "base/error.h"
 #include "base/input_file.h"
 #include "gcode/container/container.h"
-#include "shade/palette/color_name.h"
 #include "voxelize/grid/attributes.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <filesystem>
-#include <optional>
 #include <utility>
 
 namespace stratum::tools {
@@ -71,11 +70,6 @@ namespace fs = std::filesystem;
 
 constexpr const char* kOnce = "once";  // --turntable without a number
 
-std::optional<glm::dvec3> parseVector(const std::string& text, const char* option) {
-    const std::vector<double> v = parseNumbers(text, {3}, option, "X,Y,Z");
-    return glm::dvec3(v[0], v[1], v[2]);
-}
-
 constexpr std::size_t kSceneHead = 4096;  // a brace is found there, if the file is a scene
 
 // Of several inputs, one that can't be read is told of when its turn comes.
@@ -91,6 +85,8 @@ bool isScene(const fs::path& path, bool alone) {
 
 constexpr const char* kLight = "Light and material";
 
+// Most are declared without a variable: assemble::readPicture() asks for them.
+
 void addInputOptions(CLI::App& app, TraceCommand& o) {
     app.add_option(
            "IN", o.inputs,
@@ -104,93 +100,62 @@ void addInputOptions(CLI::App& app, TraceCommand& o) {
            "--each a folder")
         ->type_name("FILE|DIR");
     app.add_flag("--each", o.each, "Of several inputs, a picture each with a camera of its own, not a series");
-    app.add_option("--grid", o.grid, "Which grid (default: surface, or the only level set)")->type_name("NAME");
-
-    app.add_option("--file-up", o.file_up,
-                   "Which axis of the level set points up: z or y (default: what the file says, or z)")
-        ->check(oneOf({"z", "y"}))
-        ->type_name("AXIS");
+    const Declarations input(app, "Options");
+    input("--grid", "NAME", "Which grid (default: surface, or the only level set)");
+    completes(
+        input("--file-up", "AXIS", "Which axis of the level set points up: z or y (default: what the file says, or z)"),
+        Completion::word, {"z", "y"});
 }
 
 void addPictureOptions(CLI::App& app, TraceCommand& o) {
-    const char* picture = "Picture";
-    app.add_option("--size", o.size, "Pixels (default 1280x960)")->type_name("WxH")->group(picture);
-    app.add_option("--spp", o.render.spp, "Samples a pixel (default 16; if denoised 8, small pictures more)")
-        ->each([&o](const std::string&) { o.spp_given = true; })
-        ->type_name("N")
-        ->group(picture);
-    app.add_option("--noise", o.render.noise,
-                   "Samples until the relative error is this, e.g. 0.05, but no more than --spp (then 4096 by default)")
-        ->type_name("T")
-        ->group(picture);
-    app.add_option("--time", o.render.seconds,
-                   "Samples until this time is over, the noisiest tiles first; another machine, another picture")
-        ->type_name("SECONDS")
-        ->group(picture);
-    app.add_option("--checkpoint", o.render.checkpoint,
+    const char* group = "Picture";
+    const Declarations picture(app, group);
+    picture("--size", "WxH", "Pixels (default 1280x960)");
+    picture("--spp", "N", "Samples a pixel (default 16; if denoised 8, small pictures more)");
+    picture("--noise", "T",
+            "Samples until the relative error is this, e.g. 0.05, but no more than --spp (then 4096 by default)");
+    picture("--time", "SECONDS",
+            "Samples until this time is over, the noisiest tiles first; another machine, another picture");
+    app.add_option("--checkpoint", o.checkpoint,
                    "Keeps what is finished in this file and goes on from there; the picture is the same")
         ->type_name("FILE")
-        ->group(picture);
-    completes(app.add_option("--aov", o.aov,
-                             "More layers, for .exr: normal, depth, position, albedo, mask, variance, samples, layer, "
-                             "tool, feature"),
+        ->group(group);
+    completes(picture("--aov", "NAME,...",
+                      "More layers, for .exr: normal, depth, position, albedo, mask, variance, samples, layer, tool, "
+                      "feature"),
               Completion::list,
-              {"normal", "depth", "position", "albedo", "mask", "variance", "samples", "layer", "tool", "feature"})
-        ->type_name("NAME,...")
-        ->group(picture);
-    app.add_flag_callback(
-           "--denoise", [&o] { o.denoise = true; },
-           "Takes noise out of the finished picture, guided by its geometry (the default of pictures of light, but "
-           ".exr)")
-        ->group(picture);
-    app.add_flag_callback(
-           "--no-denoise", [&o] { o.denoise = false; }, "The mean of the samples as it is (the default for .exr)")
-        ->group(picture);
-    app.add_option("--seed", o.render.seed, "Another seed, another noise")->type_name("N")->group(picture);
-    app.add_option("--crop", o.crop, "Only these pixels of the same picture")->type_name("X0,Y0,X1,Y1")->group(picture);
-    app.add_option("--exposure", o.tone.exposure, "Stops, for pictures to look at (default: found from the light)")
-        ->each([&o](const std::string&) { o.exposure_given = true; })
-        ->type_name("EV")
-        ->group(picture);
+              {"normal", "depth", "position", "albedo", "mask", "variance", "samples", "layer", "tool", "feature"});
+    picture.flag("--denoise,!--no-denoise",
+                 "Takes noise out of the finished picture, guided by its geometry (the default of pictures of light, "
+                 "but .exr)");
+    picture("--seed", "N", "Another seed, another noise");
+    picture("--crop", "X0,Y0,X1,Y1", "Only these pixels of the same picture");
+    picture("--exposure", "EV", "Stops, for pictures to look at (default: found from the light)");
 }
 
 void addCameraOptions(CLI::App& app, TraceCommand& o) {
-    const char* camera = "Camera";
-    completes(app.add_option("--view", o.view, "iso, front, back, left, right, top, bottom (default iso)"),
-              Completion::word, wordsOf(shade::kViews))
-        ->type_name("NAME")
-        ->group(camera);
-    const auto vector = [&](const char* name, std::string& value, const char* help) {
-        return app.add_option(name, value, help)->type_name("X,Y,Z")->group(camera);
-    };
-    auto* eye = vector("--eye", o.eye, "Where the camera stands, in the world units of the .vdb");
-    vector("--look-at", o.look_at, "What it looks at (default: the middle of the part)")->needs(eye);
-    vector("--up", o.up, "Which way is up (default 0,0,1)");
-    app.add_option("--f-number", o.scene.camera.f_number, "Depth of field of a camera with a picture 24 mm high")
-        ->type_name("N")
-        ->group(camera);
-    app.add_option("--aperture", o.scene.camera.aperture, "The same by the diameter of the lens, in world units")
-        ->type_name("LENGTH")
-        ->group(camera);
-    app.add_option("--focus", o.focus, "Distance that is sharp, or a point (default: the middle of the part)")
-        ->type_name("LENGTH|X,Y,Z")
-        ->group(camera);
+    const char* group = "Camera";
+    const Declarations camera(app, group);
+    completes(camera("--view", "NAME", "iso, front, back, left, right, top, bottom (default iso)"), Completion::word,
+              wordsOf(shade::kViews));
+    camera("--eye", "X,Y,Z", "Where the camera stands, in the world units of the .vdb");
+    camera("--look-at", "X,Y,Z", "What it looks at (default: the middle of the part)");
+    camera("--up", "X,Y,Z", "Which way is up (default 0,0,1)");
+    camera("--f-number", "N", "Depth of field of a camera with a picture 24 mm high");
+    camera("--aperture", "LENGTH", "The same by the diameter of the lens, in world units");
+    camera("--focus", "LENGTH|X,Y,Z", "Distance that is sharp, or a point (default: the middle of the part)");
     app.add_option("--turntable", o.turns,
                    "N numbered pictures from all around; of a film: the camera goes round N times (default 1)")
         ->expected(0, 1)
         ->default_str(kOnce)
         ->type_name("[N]")
-        ->group(camera);
-    app.add_option("--fov", o.scene.camera.fov, "Vertical angle of view (default 28)")->type_name("DEG")->group(camera);
-    app.add_option("--frame", o.frame,
-                   "What a named view is fitted to: part, without skirts, prime towers and start lines, or all that is "
-                   "there (default part)")
-        ->check(CLI::IsMember({"part", "all"}))
-        ->type_name("NAME")
-        ->group(camera);
-    app.add_option("--zoom", o.scene.camera.zoom, "All F times larger, from the same place (default 1)")
-        ->type_name("F")
-        ->group(camera);
+        ->group(group);
+    camera("--fov", "DEG", "Vertical angle of view (default 28)");
+    completes(camera("--frame", "NAME",
+                     "What a named view is fitted to: part, without skirts, prime towers and start lines, or all that "
+                     "is there (default part)"),
+              Completion::word, {"part", "all"});
+    camera("--zoom", "F", "All F times larger, from the same place (default 1)");
 }
 
 // Before the camera's options are checked.
@@ -213,113 +178,70 @@ void applyTurns(TraceCommand& o) {
         o.turntable = turns;
 }
 
-void addClipOption(CLI::App& app, TraceCommand& o) {
-    app.add_option("--clip", o.clip,
-                   "A section: only what lies where NX x + NY y + NZ z <= D, with the cut closed; may be repeated")
-        ->allow_extra_args(false)
-        ->type_name("NX,NY,NZ,D")
-        ->group("Picture");
-}
-
-void addMaterialOptions(CLI::App& app, TraceCommand& o) {
-    completes(app.add_option("--integrator", o.render.integrator.name,
-                             "path, direct, phong, ao, normal, depth, position, mask, layer, tool, "
-                             "feature (default path)"),
+void addMaterialOptions(CLI::App& app) {
+    const Declarations light(app, kLight);
+    completes(light("--integrator", "NAME",
+                    "path, direct, phong, ao, normal, depth, position, mask, layer, tool, feature (default path)"),
               Completion::word,
-              {"path", "direct", "phong", "ao", "normal", "depth", "position", "mask", "layer", "tool", "feature"})
-        ->type_name("NAME")
-        ->group(kLight);
-    app.add_option("--bounces", o.render.integrator.bounces, "path: scattering events (default 3)")
-        ->type_name("N")
-        ->group(kLight);
-    app.add_flag("--exact-translucency", o.render.integrator.exact_translucency,
-                 "path: follow all light in translucent plastic to its end; without it, light that has met four "
-                 "surfaces is the mean of such light near there")
-        ->group(kLight);
-    app.add_option("--phong", o.phong, "phong: weights, exponent and mirror's share (default 1,1,1,500,0.2)")
-        ->type_name("KA,KD,KS,SHININESS,KR")
-        ->group(kLight);
+              {"path", "direct", "phong", "ao", "normal", "depth", "position", "mask", "layer", "tool", "feature"});
+    light("--bounces", "N", "path: scattering events (default 3)");
+    light.flag("--exact-translucency",
+               "path: follow all light in translucent plastic to its end; without it, light that has met four "
+               "surfaces is the mean of such light near there");
+    light("--phong", "KA,KD,KS,SHININESS,KR", "phong: weights, exponent and mirror's share (default 1,1,1,500,0.2)");
     addGone(app, "--environment-rows",
             "it was of --integrator environment-sum; direct has the same light, without bias");
-    app.add_option("--ao-distance", o.render.integrator.ao_distance, "ao: farther things don't occlude")
-        ->type_name("LENGTH")
-        ->group(kLight);
+    light("--ao-distance", "LENGTH", "ao: farther things don't occlude");
     std::vector<std::string> materials = shade::brdfNames();
     std::string forms;
     for (const auto& [form, meaning] : shade::brdfForms()) {
         materials.emplace_back(form.substr(0, form.find(':') + 1));
         forms += fmt::format("{}{}, ", form, meaning.empty() ? "" : fmt::format(" ({})", meaning));
     }
-    completes(app.add_option("--brdf", o.scene.brdf,
-                             forms + "a measured table (Mini-Diff, Zemax, ASTM E1392, "
-                                     "MERL, EXR), the name of one in data/brdf, e.g. pla-blue, or a colour (default: "
-                                     "the filament's colours if "
-                                     "the file states them)"),
-              Completion::preset, materials)
-        ->type_name("SPEC|FILE|NAME")
-        ->group(kLight);
-    app.add_option(
-           "--color", o.color,
-           "Plastic of this colour: '#ff6600', a name as in CSS, e.g. teal, or a real filament's, e.g. 'Prusament "
-           "Galaxy Black'; of G-code also several, a colour a tool")
-        ->excludes("--brdf")
-        ->type_name("COLOR,...")
-        ->group(kLight);
+    completes(light("--brdf", "SPEC|FILE|NAME",
+                    forms + "a measured table (Mini-Diff, Zemax, ASTM E1392, MERL, EXR), the name of one in data/brdf, "
+                            "e.g. pla-blue, or a colour (default: the filament's colours if the file states them)"),
+              Completion::preset, materials);
+    light("--color", "COLOR,...",
+          "Plastic of this colour: '#ff6600', a name as in CSS, e.g. teal, or a real filament's, e.g. 'Prusament "
+          "Galaxy Black'; of G-code also several, a colour a tool")
+        ->excludes("--brdf");
     addColorList(app, kLight);
     const std::vector<std::string_view> attributes = voxelize::attributeNames();
-    auto* by = app.add_option("--color-by", o.scene.color_by,
-                              fmt::format("Colours by a grid of gcode2vdb --grids: {}", fmt::join(attributes, ", ")));
-    completes(by, Completion::word, {attributes.begin(), attributes.end()})->type_name("NAME")->group(kLight);
-    app.add_option("--color-range", o.color_range,
-                   "Values at the ends of the ramp of --color-by, e.g. 20,80; what lies beyond has the end's colour "
-                   "(default: the least and the most)")
-        ->needs(by)
-        ->type_name("MIN,MAX")
-        ->group(kLight);
-    app.add_flag("--legend", o.legend, "Draws what the colours of --color-by mean into the picture")->group(kLight);
-    app.add_option("--normals", o.normals, "geometric, or smooth: without the facets of voxels (default geometric)")
-        ->check(oneOf({"geometric", "smooth"}))
-        ->type_name("NAME")
-        ->group(kLight);
+    completes(light("--color-by", "NAME",
+                    fmt::format("Colours by a grid of gcode2vdb --grids: {}", fmt::join(attributes, ", "))),
+              Completion::word, {attributes.begin(), attributes.end()});
+    light("--color-range", "MIN,MAX",
+          "Values at the ends of the ramp of --color-by, e.g. 20,80; what lies beyond has the end's colour (default: "
+          "the least and the most)");
+    light.flag("--legend", "Draws what the colours of --color-by mean into the picture");
+    completes(light("--normals", "NAME", "geometric, or smooth: without the facets of voxels (default geometric)"),
+              Completion::word, {"geometric", "smooth"});
 }
 
 void addLightOptions(CLI::App& app, TraceCommand& o) {
-    completes(app.add_option("--env", o.scene.env,
-                             "studio, sky, sky:ELEVATION,AZIMUTH,TURBIDITY, constant:R,G,B, or a .hdr or .exr map "
-                             "(default studio)"),
-              Completion::preset, {"studio", "sky", "sky:", "constant:"})
-        ->type_name("SPEC|FILE")
-        ->group(kLight);
-    app.add_option("--env-rotation", o.scene.env_rotation, "Turns it counter-clockwise as seen from above")
-        ->type_name("DEG")
-        ->group(kLight);
-    app.add_option("--env-exposure", o.scene.env_exposure, "Stops, for maps; then --exposure is 0 by default")
-        ->each([&o](const std::string&) { o.exposure_given = true; })
-        ->type_name("EV")
-        ->group(kLight);
-    completes(app.add_option("--light", o.scene.lights,
-                             "directional:X,Y,Z,R,G,B (the way it travels, irradiance), sun: the same and its DEGREES, "
-                             "point:X,Y,Z,R,G,B (place, intensity), rectangle:X,Y,Z,UX,UY,UZ,VX,VY,VZ,R,G,B (centre, "
-                             "half edges, radiance; both sides shine), ambient:R,G,B; may be repeated"),
-              Completion::word, {"directional:", "sun:", "point:", "rectangle:", "ambient:"})
-        ->allow_extra_args(false)
-        ->type_name("SPEC")
-        ->group(kLight);
+    const Declarations light(app, kLight);
+    completes(light("--env", "SPEC|FILE",
+                    "studio, sky, sky:ELEVATION,AZIMUTH,TURBIDITY, constant:R,G,B, or a .hdr or .exr map (default "
+                    "studio)"),
+              Completion::preset, {"studio", "sky", "sky:", "constant:"});
+    light("--env-rotation", "DEG", "Turns it counter-clockwise as seen from above");
+    light("--env-exposure", "EV", "Stops, for maps; then --exposure is 0 by default");
+    completes(light.several("--light", "SPEC",
+                            "directional:X,Y,Z,R,G,B (the way it travels, irradiance), sun: the same and its DEGREES, "
+                            "point:X,Y,Z,R,G,B (place, intensity), rectangle:X,Y,Z,UX,UY,UZ,VX,VY,VZ,R,G,B (centre, "
+                            "half edges, radiance; both sides shine), ambient:R,G,B; may be repeated"),
+              Completion::word, {"directional:", "sun:", "point:", "rectangle:", "ambient:"});
     app.add_option("--write-brdf", o.write_brdf, "Also write the material as a MERL .binary or an .exr texture")
         ->type_name("FILE")
         ->group(kLight);
-    app.add_flag("--bed,!--no-bed", o.scene.bed, "A seamless bed under the print (the default)")->group(kLight);
-    app.add_option("--bed-surface", o.bed_surface, "paper, pei, or grid of 10 mm (default paper)")
-        ->check(oneOf(shade::kBedSurfaces))
-        ->type_name("NAME")
-        ->group(kLight);
-    app.add_option_function<std::string>(
-           "--background", [&o](const std::string& text) { o.scene.transparent = text == "none"; },
-           "What is behind the print: scene, the bed and its backdrop or the map of light, or none: transparent, with "
-           "the shadow on the bed (default scene)")
-        ->check(oneOf({"scene", "none"}))
-        ->type_name("NAME")
-        ->group(kLight);
+    light.flag("--bed,!--no-bed", "A seamless bed under the print (the default)");
+    completes(light("--bed-surface", "NAME", "paper, pei, or grid of 10 mm (default paper)"), Completion::word,
+              wordsOf(shade::kBedSurfaces));
+    completes(light("--background", "NAME",
+                    "What is behind the print: scene, the bed and its backdrop or the map of light, or none: "
+                    "transparent, with the shadow on the bed (default scene)"),
+              Completion::word, {"scene", "none"});
 }
 
 void addShardOptions(CLI::App& app, TraceCommand& o) {
@@ -349,21 +271,20 @@ void addShardOptions(CLI::App& app, TraceCommand& o) {
         ->group(machines);
 }
 
-void addTracingOptions(CLI::App& app, TraceCommand& o) {
-    const char* tracing = "Tracing";
-    app.add_option(
-           "--march", o.march,
-           "brick (exact), sphere (sphere tracing), vdb (OpenVDB's own), or auto, which is brick (default auto)")
-        ->check(oneOf({"auto", "brick", "sphere", "vdb"}))
-        ->type_name("NAME")
-        ->group(tracing);
-    app.add_option("--brick-values", o.values,
-                   "brick: keep samples as float, or as int16, half of the memory, rounded to a 32767th of the narrow "
-                   "band's half-width (default int16)")
-        ->transform(enumeration({{"float", static_cast<int>(march::BrickValues::Float32)},
-                                 {"int16", static_cast<int>(march::BrickValues::Int16)}}))
-        ->type_name("float|int16")
-        ->group(tracing);
+void addTracingOptions(CLI::App& app) {
+    const Declarations tracing(app, "Tracing");
+    completes(tracing("--march", "NAME",
+                      "brick (exact), sphere (sphere tracing), vdb (OpenVDB's own), or auto, which is brick (default "
+                      "auto)"),
+              Completion::word, wordsOf(assemble::kMarchMethods));
+    completes(tracing("--brick-values", "float|int16",
+                      "brick: keep samples as float, or as int16, half of the memory, rounded to a 32767th of the "
+                      "narrow band's half-width (default int16)"),
+              Completion::word, {"float", "int16"});
+    tracing("--brick-cache", "SIZE",
+            "brick: no more than this of samples at once, e.g. 200MB; what no ray came to lately makes room, and the "
+            "picture stays the same. Of each print, and of each large level set (default: no bound)");
+    addGone(app, "--brick-picture", "--stats has how many bricks rays came to, bricks_made of bricks_listed");
 }
 
 }  // namespace
@@ -372,50 +293,55 @@ void addTraceOptions(CLI::App& app, TraceCommand& o) {
     addInputOptions(app, o);
     addPictureOptions(app, o);
     addCameraOptions(app, o);
-    addClipOption(app, o);
-    addMaterialOptions(app, o);
+    Declarations(app, "Picture")
+        .several("--clip", "NX,NY,NZ,D",
+                 "A section: only what lies where NX x + NY y + NZ z <= D, with the cut closed; may be repeated");
+    addMaterialOptions(app);
     addLightOptions(app, o);
-    addTracingOptions(app, o);
+    addTracingOptions(app);
     addShardOptions(app, o);
-    addTracePrintOptions(app, o.prints, o.brick_cache);
+    addPrintOptions(app, true);
+    addMomentOptions(app, o.tracing.prints);
     addFilmOptions(app, o.film, o.nozzle);
     addCommonOptions(app, o.common, traceBrief());
     app.footer(kTraceExamples);
 }
 
-void readScene(TraceCommand& o, int argc, char** argv) {
+void readPictureOptions(TraceCommand& o, const CLI::App& app) {
     const fs::path path = o.inputs.front();
-    if (!isScene(path, o.inputs.size() == 1)) return;
-    if (o.inputs.size() > 1)
-        throw UsageError(fmt::format("{}: a scene stands alone; series are of level sets, but --each takes scenes, too",
-                                     o.inputs.front()));
-    const assemble::SceneFile file = assemble::readSceneFile(path);
-    TraceCommand over;
-    over.scene = file.scene;
-    over.render = file.render;
-    over.tone = file.tone;
-    over.spp_given = file.spp_given;
-    over.exposure_given = file.exposure_given;
-    over.denoise = file.denoise;
-    over.file_up = file.file_up;
-    CLI::App app;
-    addTraceOptions(app, over);
-    app.parse(argc, argv);
-    // With objects only its name is used.
-    over.inputs = {file.objects.empty() ? file.print : path.string()};
-    over.objects = file.objects;
-    over.scene_text = sha256Hex(InputFile(path).bytes());
-    over.notes = file.notes;
-    if (over.grid.empty()) over.grid = file.grid;
-    if (!over.objects.empty() && !over.grid.empty())
+    if (isScene(path, o.inputs.size() == 1)) {
+        if (o.inputs.size() > 1)
+            throw UsageError(fmt::format(
+                "{}: a scene stands alone; series are of level sets, but --each takes scenes, too", o.inputs.front()));
+        assemble::SceneFile file = assemble::readSceneFile(path);
+        // With objects only its name is used.
+        o.inputs = {file.objects.empty() ? file.print : path.string()};
+        o.objects = std::move(file.objects);
+        o.scene_text = sha256Hex(InputFile(path).bytes());
+        o.notes = std::move(file.notes);
+        if (o.output.empty() && o.film.output.empty())
+            o.output = file.output.empty() ? path.filename().replace_extension(".png").string() : file.output;
+        file.tracing.prints = o.tracing.prints;
+        static_cast<assemble::PictureRequest&>(o) = std::move(file);
+    }
+    CommandSource options(app);
+    assemble::readPicture(options, o);
+    readPrintOptions(options, o.tracing.prints.print, true);
+    assemble::completeSamples(o);
+    if (!o.objects.empty() && options.text("grid"))
         throw UsageError("--grid: the scene has objects; each names its own");
-    if (over.output.empty() && over.film.output.empty())
-        over.output = file.output.empty() ? path.filename().replace_extension(".png").string() : file.output;
-    o = std::move(over);
+    if (!o.checkpoint.empty()) o.render.checkpoint = o.checkpoint;
+    if (!o.tool_colors.empty()) o.tracing.prints.print.read.filament_colors = o.tool_colors;
+    if (o.exposure) o.tone.exposure = *o.exposure;
+    applyTurns(o);
+    o.scene.camera.all_around = o.turntable > 1;
+    o.render.validate();
+    o.scene.camera.validate();
+    o.tone.validate();
 }
 
 std::vector<std::string> inputFilesOf(const TraceCommand& o) {
-    return assemble::inputFiles(o.objects, o.scene, o.prints.print.printer, o.film.camera_path);
+    return assemble::inputFiles(o.objects, o.scene, o.tracing.prints.print.printer, o.film.camera_path);
 }
 
 std::string sourceOf(const TraceCommand& o, const std::string& files) {
@@ -423,63 +349,6 @@ std::string sourceOf(const TraceCommand& o, const std::string& files) {
     for (const std::string& file : inputFilesOf(o)) text += assemble::identityOf(file) + "\n";
     if (!o.scene_text.empty()) text += o.scene_text;
     return sha256Hex(text).substr(0, 32);
-}
-
-void applyText(TraceCommand& o) {
-    if (!o.size.empty()) {
-        const auto size = parseIntegers(o.size, 2, 'x', "--size", "WxH in pixels, e.g. 1280x960");
-        o.render.width = size[0];
-        o.render.height = size[1];
-    }
-    if (!o.crop.empty()) {
-        const auto c = parseIntegers(o.crop, 4, ',', "--crop", "X0,Y0,X1,Y1 in pixels");
-        o.render.crop = shade::PixelBox{c[0], c[1], c[2], c[3]};
-    }
-    if (!o.color_range.empty()) {
-        const auto ends = parseNumbers(o.color_range, {2}, "--color-range", "MIN,MAX");
-        if (!(ends[0] < ends[1]))
-            throw UsageError(fmt::format("--color-range {}: MIN is not below MAX", o.color_range));
-        o.scene.color_range = {ends[0], ends[1]};
-    }
-    if (!o.phong.empty()) {
-        const auto v = parseNumbers(o.phong, {5}, "--phong", "KA,KD,KS,SHININESS,KR");
-        o.render.integrator.phong = {static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2]),
-                                     static_cast<float>(v[3]), static_cast<float>(v[4])};
-    }
-    if (!o.aov.empty()) o.render.aovs = shade::parseAovs(o.aov);
-    if (!o.view.empty()) o.scene.camera.view = shade::parseView(o.view);
-    if (!o.eye.empty()) o.scene.camera.eye = parseVector(o.eye, "--eye");
-    if (!o.look_at.empty()) o.scene.camera.look_at = parseVector(o.look_at, "--look-at");
-    if (!o.up.empty()) o.scene.camera.up = parseVector(o.up, "--up");
-    if (!o.focus.empty()) {
-        const std::vector<double> focus = parseNumbers(o.focus, {1, 3}, "--focus", "a distance or a point X,Y,Z");
-        o.scene.camera.focus_distance.reset();
-        o.scene.camera.focus_point.reset();
-        if (focus.size() == 1) o.scene.camera.focus_distance = focus[0];
-        if (focus.size() == 3) o.scene.camera.focus_point = glm::dvec3(focus[0], focus[1], focus[2]);
-    }
-    o.clip_planes.clear();
-    for (const std::string& text : o.clip) {
-        const std::vector<double> v = parseNumbers(text, {4}, "--clip", "NX,NY,NZ,D");
-        o.clip_planes.push_back({{v[0], v[1], v[2]}, v[3]});
-    }
-    if (!o.color.empty()) {
-        if (colorsTools(o)) {
-            assemble::ToolColors tools = assemble::toolColorsOf(o.color, "--color");
-            o.prints.print.read.filament_colors = std::move(tools.colors);
-            o.finishes = std::move(tools.finishes);
-            o.scene.brdf.clear();  // a scene file's
-        } else {
-            o.scene.brdf = shade::colorNamed(o.color, "--color").brdf;
-        }
-    }
-    if (!o.normals.empty()) o.scene.smooth_normals = o.normals == "smooth";
-    if (!o.bed_surface.empty()) o.scene.bed_surface = shade::parseBedSurface(o.bed_surface);
-    applyTurns(o);
-    o.scene.camera.all_around = o.turntable > 1;
-    o.render.validate();
-    o.scene.camera.validate();
-    o.tone.validate();
 }
 
 }  // namespace stratum::tools

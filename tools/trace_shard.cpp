@@ -115,7 +115,7 @@ std::string saidOf(const CLI::App& app) {
 }
 
 std::size_t pictures(const TraceCommand& o) {
-    return o.inputs.size() * static_cast<std::size_t>(o.prints.series) * static_cast<std::size_t>(o.turntable);
+    return o.inputs.size() * static_cast<std::size_t>(o.tracing.prints.series) * static_cast<std::size_t>(o.turntable);
 }
 
 std::string outputOf(const TraceCommand& o, std::size_t n) {

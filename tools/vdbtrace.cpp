@@ -1,6 +1,7 @@
 // vdbtrace: level set -> picture.
 #include "batch.h"
 #include "command_line.h"
+#include "command_source.h"
 #include "output_names.h"
 #include "run_files.h"
 #include "shade/environment/environment.h"
@@ -12,6 +13,7 @@
 
 #include "assemble/file/file_facts.h"
 #include "assemble/finished_picture.h"
+#include "assemble/shape/shape.h"
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "shade/film/picture.h"
@@ -41,7 +43,8 @@ bool isLevelSet(const std::string& path) {
 }
 
 // What is asked of G-code has some.
-void checkPrints(const tools::TraceCommand& o, const std::vector<std::string>& given_of_prints) {
+void checkPrints(const tools::TraceCommand& o, std::vector<std::string> given_of_prints) {
+    if (!o.tool_colors.empty()) given_of_prints.emplace_back("--color");
     if (given_of_prints.empty()) return;
     if (o.objects.empty()) {
         for (const std::string& input : o.inputs)
@@ -82,7 +85,7 @@ void check(tools::TraceCommand& o, const std::vector<std::string>& given_of_prin
                                      o.output, tools::pictures(o)));
     if (!o.render.checkpoint.empty() && tools::pictures(o) > 1)
         throw UsageError("--checkpoint is for one picture; render the frames of a series one by one");
-    if (o.prints.series > 1 && o.inputs.size() * std::max<std::size_t>(1, o.objects.size()) > 1)
+    if (o.tracing.prints.series > 1 && o.inputs.size() * std::max<std::size_t>(1, o.objects.size()) > 1)
         throw UsageError("--progress-series is of one print alone");
     checkNozzle(o);
     if (const std::string given = tools::givenFilmOptions(o.film); !given.empty())
@@ -109,17 +112,8 @@ void listFiles(tools::RunFiles& files, const tools::TraceCommand& o, const std::
     files.writes(o.write_brdf, "--write-brdf");
 }
 
-// The scene, if the input is one, and everything that is kept as text.
-void prepare(tools::TraceCommand& o, int argc, char** argv) {
-    const std::string said = o.said;
-    tools::readScene(o, argc, argv);
-    o.said = said;
-    if ((o.render.noise > 0.0 || o.render.seconds > 0.0) && !o.spp_given) o.render.spp = 4096;
-    tools::applyText(o);
-}
-
 // --each: commands of one input each, without those that fail.
-std::vector<tools::TraceCommand> split(const tools::TraceCommand& whole, tools::Batch& batch, int argc, char** argv) {
+std::vector<tools::TraceCommand> split(const tools::TraceCommand& whole, tools::Batch& batch, const CLI::App& app) {
     if (!whole.output.empty() && !tools::namesFolder(whole.output) && fs::path(whole.output).has_extension())
         throw UsageError(
             fmt::format("-o {}: with --each it names the folder of the pictures, e.g. -o pictures", whole.output));
@@ -127,7 +121,7 @@ std::vector<tools::TraceCommand> split(const tools::TraceCommand& whole, tools::
     for (const std::string& input : whole.inputs) {
         tools::TraceCommand one = whole;
         one.inputs = {input};
-        if (!batch.attempt(input, [&] { prepare(one, argc, argv); })) continue;
+        if (!batch.attempt(input, [&] { tools::readPictureOptions(one, app); })) continue;
         const fs::path folder = whole.output.empty() ? fs::path(input).parent_path() : fs::path(whole.output);
         one.output = (folder / (tools::stemOf(input) + (one.render.aovs.empty() ? ".png" : ".exr"))).string();
         one.each = true;
@@ -145,8 +139,8 @@ void nameOutput(tools::TraceCommand& o) {
     o.output = (folder ? fs::path(o.output) / name : fs::path(name)).string();
 }
 
-void runFilm(tools::TraceCommand& o, const std::vector<std::string>& given_of_prints, int argc, char** argv) {
-    prepare(o, argc, argv);
+void runFilm(tools::TraceCommand& o, const std::vector<std::string>& given_of_prints, const CLI::App& app) {
+    tools::readPictureOptions(o, app);
     tools::planFilm(o);
     const tools::ThreadLimit limit(o.common.threads);
     tools::RunFiles files;
@@ -154,26 +148,27 @@ void runFilm(tools::TraceCommand& o, const std::vector<std::string>& given_of_pr
     files.writes(o.common.stats, "--stats");
     checkPrints(o, given_of_prints);
     checkNozzle(o);
-    o.denoise = assemble::chooseDenoising({o.denoise, o.linear, o.spp_given}, o.render);
+    o.denoise = assemble::chooseDenoising(o.denoising(o.linear), o.render);
     for (const std::string& note : o.notes) tools::say(o.common, note);
     tools::writeStats(o.common, tools::traceFilm(o, limit.threads()));
 }
 
-void run(const CLI::App& app, tools::TraceCommand& whole, int argc, char** argv) {
+void run(const CLI::App& app, tools::TraceCommand& whole, char** argv) {
     // Before standard input is read: the process starts itself once more. Bricks have huge pages of their own.
-    if (whole.march != "auto" && whole.march != "brick") tools::useHugePages(argv);
+    tools::CommandSource options(app);
+    if (!assemble::marchesBricks(options.choice("march", assemble::kMarchMethods).value_or(whole.tracing.march)))
+        tools::useHugePages(argv);
     tools::keepFreedMemory();
     std::vector<std::string> given_of_prints = tools::givenPrintOptions(app);
-    if (tools::colorsTools(whole)) given_of_prints.emplace_back("--color");
-    if (!whole.film.output.empty()) return runFilm(whole, given_of_prints, argc, argv);
+    if (!whole.film.output.empty()) return runFilm(whole, given_of_prints, app);
     const bool folder = whole.each || tools::namesFolder(whole.output);
     const bool named = !folder && !whole.output.empty();
     tools::Batch batch("vdbtrace", whole.inputs.size());
     std::vector<tools::TraceCommand> commands;
     if (whole.each) {
-        commands = split(whole, batch, argc, argv);
+        commands = split(whole, batch, app);
     } else {
-        prepare(whole, argc, argv);
+        tools::readPictureOptions(whole, app);
         nameOutput(whole);
         commands = {whole};
     }
@@ -195,7 +190,7 @@ void run(const CLI::App& app, tools::TraceCommand& whole, int argc, char** argv)
         for (const Json& report : some) reports.push_back(report);
     };
     for (tools::TraceCommand& o : commands) {
-        o.denoise = assemble::chooseDenoising({o.denoise, o.linear, o.spp_given}, o.render);
+        o.denoise = assemble::chooseDenoising(o.denoising(o.linear), o.render);
         tools::identify(o);
         if (!makesAny(o)) continue;
         for (const std::string& note : o.notes) tools::say(o.common, note);
@@ -221,6 +216,6 @@ int main(int argc, char** argv) {
     tools::addTraceOptions(app, command);
     return tools::runTool(app, argc, argv, [&] {
         command.said = tools::saidOf(app);
-        run(app, command, argc, argv);
+        run(app, command, argv);
     });
 }

@@ -2,17 +2,16 @@
 #include "command_line.h"
 #include "command_line/run_files.h"
 #include "print_options.h"
-#include "trace_print_options.h"
 
 #include "assemble/file/file_facts.h"
 #include "assemble/file/input_files.h"
-#include "assemble/file/scene_file.h"
+#include "assemble/picture_request.h"
+#include "assemble/scene_file.h"
 #include "base/error.h"
 #include "base/input_file.h"
 #include "gcode/container/container.h"
 #include "serve/server.h"
 #include "view/viewer.h"
-#include "voxelize/grid/voxel_choice.h"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -26,6 +25,7 @@
 #include <filesystem>
 #include <fstream>
 #include <memory>
+#include <optional>
 #include <string>
 #include <system_error>
 #include <vector>
@@ -45,7 +45,8 @@ struct ViewCommand {
     tools::CommonOptions common;
     std::vector<std::string> inputs, hosts;
     assemble::PrintRequest prints;
-    std::string brick_cache, listen = "127.0.0.1", token_file;
+    std::string listen = "127.0.0.1", token_file;
+    std::optional<std::size_t> brick_cache;
     std::uint16_t port = 0;
     bool open = false;
 };
@@ -76,10 +77,9 @@ void addOptions(CLI::App& app, ViewCommand& o) {
         ->allow_extra_args(false)
         ->type_name("NAME[:PORT]")
         ->group(server);
-    app.add_option("--brick-cache", o.brick_cache, "No more than this of samples at once, of each print, e.g. 200MB")
-        ->type_name("SIZE")
-        ->group("Tracing");
-    tools::addPrintOptions(app, o.prints.print);
+    tools::Declarations(app, "Tracing")("--brick-cache", "SIZE",
+                                        "No more than this of samples at once, of each print, e.g. 200MB");
+    tools::addPrintOptions(app);
     tools::addCommonOptions(app, o.common,
                             {{"IN", "Prints, level sets, scenes; the page chooses"},
                              {"--open", "Opens the page in the browser"},
@@ -115,7 +115,8 @@ view::GivenInput givenInput(const ViewCommand& o, const std::string& path, const
     given.path = path;
     assemble::TracingOptions& tracing = given.options.tracing;
     if (isScene(path)) {
-        const assemble::SceneFile scene = assemble::readSceneFile(path);
+        assemble::SceneFile scene = assemble::readSceneFile(path);
+        assemble::completeSamples(scene);
         given.objects = scene.objects;
         if (given.objects.empty()) {
             given.objects.emplace_back();
@@ -123,13 +124,12 @@ view::GivenInput givenInput(const ViewCommand& o, const std::string& path, const
             given.objects.front().grid = scene.grid;
             given.objects.front().up = scene.file_up;
         }
-        given.options.scene = scene.scene;
-        given.options.render = scene.render;
+        given.options = scene;
         given.options.render.seconds = 0.0;  // pictures by the clock differ from each other
         given.options.render.checkpoint.clear();
         given.options.render.crop.reset();  // the page chooses the size
-        given.denoising = {scene.denoise, false, scene.spp_given};
-        if (scene.exposure_given) given.exposure = scene.tone.exposure;
+        given.denoising = scene.denoising();
+        given.exposure = scene.exposure;
     } else {
         given.objects.emplace_back();
         given.objects.front().vdb = path;
@@ -138,8 +138,7 @@ view::GivenInput givenInput(const ViewCommand& o, const std::string& path, const
                                     [](const auto& object) { return !object.sdf && !assemble::isVdbFile(object.vdb); });
     if (prints) given.words = words;
     tracing.prints = o.prints;
-    if (!o.brick_cache.empty())
-        tracing.brick_cache = static_cast<std::size_t>(std::min(voxelize::parseSize(o.brick_cache), 1e18));
+    if (o.brick_cache) tracing.brick_cache = *o.brick_cache;
     return given;
 }
 
@@ -255,5 +254,10 @@ int main(int argc, char** argv) {
     CLI::App app("Shows prints, level sets and scenes in a browser.", "vdbview");
     ViewCommand command;
     addOptions(app, command);
-    return tools::runTool(app, argc, argv, [&] { run(app, command); });
+    return tools::runTool(app, argc, argv, [&] {
+        tools::CommandSource options(app);
+        tools::readPrintOptions(options, command.prints.print);
+        command.brick_cache = assemble::brickCacheOf(options);
+        run(app, command);
+    });
 }

@@ -2,7 +2,7 @@
 
 #include "base/error.h"
 #include "base/input_file.h"
-#include "base/json_section.h"
+#include "base/options/json_section.h"
 
 #include <fmt/format.h>
 

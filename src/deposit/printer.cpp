@@ -1,8 +1,8 @@
 #include "deposit/printer.h"
 
 #include "base/error.h"
-#include "base/json_section.h"
 #include "base/names.h"
+#include "base/options/json_section.h"
 #include "base/text.h"
 #include "deposit/limits/command_limits.h"
 #include "deposit/limits/json_limits.h"

@@ -1,8 +1,8 @@
+#include "assemble/print/read_print_options.h"
 #include "python/arrays.h"
 #include "python/conversion.h"
 #include "python/level_set_object.h"
 #include "python/named_tuple.h"
-#include "python/options/print_options.h"
 #include "python/options/signature.h"
 #include "python/point_loop.h"
 
@@ -43,7 +43,7 @@ Kind valueKind(voxelize::Attribute attribute) {
 PrintFieldObject makeField(const ToolpathObject& print, const py::kwargs& given) {
     Keywords keywords("PrintField", given);
     exporter::LevelSetChoices choices;
-    choices.print = printOptionsOf(keywords);
+    assemble::readConversion(keywords, choices.print);
     choices.attributes.emplace();
     keywords.finish();
     return callLong(py::none(), [&](const Report&) {
@@ -271,12 +271,13 @@ py::object occluded(const IntersectorObject& self, const py::object& origins, co
 
 void bindPrintField(py::module_& module) {
     py::class_<PrintFieldObject>(module, "PrintField",
-                                 documented(fmt::format("PrintField(toolpath, *, {})", kPrintParameters),
+                                 documented(fmt::format("PrintField(toolpath, *, {})", conversionParameters()),
                                             "A print that is evaluated where it is asked, without a grid. voxel_size "
                                             "(mm) is that of rays and attributes.")
                                      .c_str())
         .def(py::init(&makeField),
-             documented(fmt::format("__init__(self, toolpath, *, {})", kPrintParameters), "As the class says.").c_str(),
+             documented(fmt::format("__init__(self, toolpath, *, {})", conversionParameters()), "As the class says.")
+                 .c_str(),
              "toolpath"_a)
         .def("distance", &distanceOf,
              documented("distance(self, points, *, progress=None)",

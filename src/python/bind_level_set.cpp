@@ -1,10 +1,10 @@
+#include "assemble/print/read_print_options.h"
 #include "python/arrays.h"
 #include "python/conversion.h"
 #include "python/dense_block.h"
 #include "python/level_set_mesh.h"
 #include "python/level_set_object.h"
 #include "python/named_tuple.h"
-#include "python/options/print_options.h"
 #include "python/options/signature.h"
 #include "python/point_loop.h"
 
@@ -68,6 +68,10 @@ exporter::FileOptions fileOptionsOf(Keywords& options) {
     return file;
 }
 
+std::string fileParameters() {
+    return parametersOf([](Keywords& options) { (void)fileOptionsOf(options); }) + ", overwrite=None";
+}
+
 std::string pathOf(const py::object& path) {
     return py::module_::import("os").attr("fspath")(path).cast<std::string>();
 }
@@ -105,7 +109,7 @@ py::object voxelizeBlock(const ToolpathObject& print, const py::object& box, con
                          const py::kwargs& given) {
     Keywords keywords("voxelize_block", given);
     exporter::LevelSetChoices choices;
-    choices.print = printOptionsOf(keywords);
+    assemble::readConversion(keywords, choices.print);
     choices.attributes.emplace();
     keywords.finish();
     if (print.toolpath->belt_angle != 0)
@@ -296,7 +300,7 @@ void addMethods(py::class_<LevelSetObject>& type) {
                         .c_str(),
                     "path"_a, "grid"_a = "", "attributes"_a = std::vector<std::string>())
         .def("write", &writeLevelSet,
-             documented(fmt::format("write(self, path, *, {})", kFileParameters),
+             documented(fmt::format("write(self, path, *, {})", fileParameters()),
                         "A .vdb of all grids: precision 'float' (default) or 'half', compression 'blosc' (default), "
                         "'zip' or 'none'. overwrite: files that this program did not write are replaced, too. Raises "
                         "OutputError.")
@@ -383,18 +387,21 @@ void bindLevelSet(py::module_& module) {
                                     "A sparse level set in memory, and the grids of its attributes. It never changes.");
     addMethods(type);
     addFacts(type);
-    const auto options = [](std::string_view call, std::string_view more, std::string_view text) {
-        return documented(fmt::format("{}progress=None, {}{})", call, kPrintParameters, more), text);
-    };
-    const std::string choices = fmt::format(", {}", kLevelSetParameters);
-    module.def("voxelize", &voxelizePrint, options("voxelize(toolpath, *, ", choices, kVoxelize).c_str(), "toolpath"_a,
-               py::kw_only(), "progress"_a = py::none());
-    module.def("voxelize_block", &voxelizeBlock, options("voxelize_block(toolpath, box=None, *, ", "", kBlock).c_str(),
-               "toolpath"_a, "box"_a = py::none(), py::kw_only(), "progress"_a = py::none());
+    const std::string choices = parametersOf([](Keywords& given) { (void)levelSetChoicesOf(given); });
+    module.def("voxelize", &voxelizePrint,
+               documented(fmt::format("voxelize(toolpath, *, progress=None, {})", choices), kVoxelize).c_str(),
+               "toolpath"_a, py::kw_only(), "progress"_a = py::none());
     module.def(
-        "write_vdb", &writeVdb,
-        options("write_vdb(toolpath, path, *, ", fmt::format("{}, {}", choices, kFileParameters), kWrite).c_str(),
-        "toolpath"_a, "path"_a, py::kw_only(), "progress"_a = py::none());
+        "voxelize_block", &voxelizeBlock,
+        documented(fmt::format("voxelize_block(toolpath, box=None, *, progress=None, {})", conversionParameters()),
+                   kBlock)
+            .c_str(),
+        "toolpath"_a, "box"_a = py::none(), py::kw_only(), "progress"_a = py::none());
+    module.def("write_vdb", &writeVdb,
+               documented(fmt::format("write_vdb(toolpath, path, *, progress=None, {}, {})", choices, fileParameters()),
+                          kWrite)
+                   .c_str(),
+               "toolpath"_a, "path"_a, py::kw_only(), "progress"_a = py::none());
 }
 
 }  // namespace stratum::python

@@ -5,6 +5,8 @@
 #include "python/errors.h"
 #include "python/long_call.h"
 #include "python/options/keywords.h"
+
+#include "assemble/print/read_print_options.h"
 #include "python/options/signature.h"
 #include "python/toolpath_object.h"
 
@@ -55,8 +57,8 @@ py::object dictOf(const nlohmann::ordered_json& json) {
 py::object reportPrint(const ToolpathObject& print, const py::object& progress, const py::kwargs& given) {
     Keywords keywords("report", given);
     report::ReportOptions options;
-    options.density = keywords.number("density", 0.01, 25);
-    options.price = keywords.number("price", 0, 1e9);
+    options.density = keywords.numberIn("density", 0.01, 25);
+    options.price = keywords.numberIn("price", 0, 1e9);
     exporter::LevelSetChoices choices = levelSetChoicesOf(keywords);
     keywords.finish();
     choices.attributes.emplace();
@@ -77,7 +79,7 @@ py::object comparePrint(const ToolpathObject& print, const py::object& model, co
     compare::CompareOptions options;
     assign(options.placement, keywords.choice("at", kPlacements));
     exporter::LevelSetChoices choices;
-    choices.print = printOptionsOf(keywords);
+    assemble::readConversion(keywords, choices.print);
     choices.interior = voxelize::Interior::cull;
     choices.attributes.emplace();
     keywords.finish();
@@ -102,14 +104,15 @@ py::object comparePrint(const ToolpathObject& print, const py::object& model, co
 
 void bindMeasures(py::module_& module) {
     module.def("report", &reportPrint,
-               documented(fmt::format("report(toolpath, *, progress=None, density=None, price=None, {}, {})",
-                                      kPrintParameters, kLevelSetParameters),
+               documented(fmt::format("report(toolpath, *, progress=None, density=None, price=None, {})",
+                                      parametersOf([](Keywords& given) { (void)levelSetChoicesOf(given); })),
                           kReport)
                    .c_str(),
                "toolpath"_a, py::kw_only(), "progress"_a = py::none());
     module.def(
         "compare", &comparePrint,
-        documented(fmt::format("compare(toolpath, model, *, progress=None, at=None, {})", kPrintParameters), kCompare)
+        documented(fmt::format("compare(toolpath, model, *, progress=None, at=None, {})", conversionParameters()),
+                   kCompare)
             .c_str(),
         "toolpath"_a, "model"_a, py::kw_only(), "progress"_a = py::none());
 }

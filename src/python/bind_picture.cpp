@@ -56,8 +56,8 @@ struct PictureObject {
 
 // The picture that vdbtrace makes.
 PictureObject makePicture(const std::string& path, RenderCall& call, const Report& report) {
-    assemble::PictureOptions& options = call.picture;
-    const bool denoised = assemble::chooseDenoising({call.denoise, false, call.spp_given}, options.render);
+    assemble::PictureRequest& options = call;
+    const bool denoised = assemble::chooseDenoising(call.denoising(), options.render);
     options.tracing.events.fraction = report;
     options.tracing.events.begin = [&report](std::string_view, bool) { report(0); };
     assemble::ObjectOptions object;
@@ -104,13 +104,13 @@ std::unique_ptr<PictureObject> render(const py::object& source, const py::object
     RenderCall call = renderCallOf(keywords);
     keywords.finish();
     std::string path;
-    if (!call.tool_colors.empty()) call.picture.tracing.prints.print.read.filament_colors = call.tool_colors;
+    if (!call.tool_colors.empty()) call.tracing.prints.print.read.filament_colors = call.tool_colors;
     if (py::isinstance<ToolpathObject>(source)) {
         if (!call.tool_colors.empty())
             throw UsageError("render(): color: of a Toolpath that is read already, read() takes filament_colors");
         refuse(call.of_reading, "of G-code that is read here; of a Toolpath, read() takes them");
         const auto& print = source.cast<const ToolpathObject&>();
-        call.picture.tracing.prints.toolpath = print.toolpath;
+        call.tracing.prints.toolpath = print.toolpath;
         path = print.source.empty() ? "print" : print.source;
     } else if (py::isinstance<py::str>(source) || py::hasattr(source, "__fspath__")) {
         path = py::module_::import("os").attr("fspath")(source).cast<std::string>();
@@ -221,8 +221,8 @@ void bindPicture(py::module_& module) {
             return fmt::format("<stratum.Picture: {} x {}>", self.film.width(), self.film.height());
         });
     module.def("render", &render,
-               documented(fmt::format("render(source, *, progress=None, {}, {}, {})", kPictureParameters,
-                                      kReadParameters, kPrintParameters),
+               documented(fmt::format("render(source, *, progress=None, {})",
+                                      parametersOf([](Keywords& given) { (void)renderCallOf(given); })),
                           kRender)
                    .c_str(),
                "source"_a, py::kw_only(), "progress"_a = py::none());

@@ -3,7 +3,6 @@
 #include "python/long_call.h"
 #include "python/make_toolpath.h"
 #include "python/options/keywords.h"
-#include "python/options/print_options.h"
 #include "python/options/signature.h"
 #include "python/toolpath_object.h"
 #include "python/toolpath_state.h"
@@ -54,7 +53,9 @@ ToolpathObject readProgram(const py::object& source, const py::object& progress,
     Keywords options("read", given);
     const bool timed = options.flag("timed").value_or(false);
     const bool with_travels = options.flag("travels").value_or(false);
-    gcode::ReadOptions read = readOptionsOf(options);
+    voxelize::PrintOptions print;
+    assemble::readReading(options, print);
+    gcode::ReadOptions& read = print.read;
     options.finish();
     std::string bytes;
     std::string path;
@@ -168,7 +169,7 @@ py::object timesOf(const ToolpathObject& self) {
 py::array selectBeads(const ToolpathObject& self, const py::kwargs& given) {
     Keywords options("select", given);
     voxelize::PrintOptions print;
-    readSelection(options, print);
+    assemble::readSelection(options, print);
     options.finish();
     std::vector<std::uint32_t> selection =
         voxelize::selectBeads(*self.toolpath, voxelize::selectionOf(print, *self.toolpath));
@@ -340,8 +341,10 @@ void bindToolpath(py::module_& module) {
     addArrays(type);
     addAskedArrays(type);
     addFacts(type);
+    voxelize::PrintOptions print;
+    const std::string selection = parametersOf([&](Keywords& options) { assemble::readSelection(options, print); });
     type.def("select", &selectBeads,
-             documented(fmt::format("select(self, *, {})", kSelectionParameters),
+             documented(fmt::format("select(self, *, {})", selection),
                         "Array of indices into beads, ascending; as the tools' options of those names.")
                  .c_str())
         .def("replace", &replaced,
@@ -355,7 +358,8 @@ void bindToolpath(py::module_& module) {
         [](const py::object& source, const py::object& progress, const py::kwargs& options) {
             return readProgram(source, progress, options);
         },
-        documented(fmt::format("read(source, *, timed=None, travels=None, progress=None, {})", kReadParameters), kRead)
+        documented(fmt::format("read(source, *, timed=None, travels=None, progress=None, {})", readingParameters()),
+                   kRead)
             .c_str(),
         "source"_a, py::kw_only(), "progress"_a = py::none());
     module.def("make_toolpath", &makeToolpath,

@@ -1,6 +1,6 @@
 #include "python/conversion.h"
 
-#include "python/options/print_options.h"
+#include "assemble/print/read_print_options.h"
 
 #include "export/vdb_stream.h"
 #include "voxelize/grid/interior_distance.h"
@@ -33,7 +33,7 @@ exporter::Provenance provenanceOf(const ToolpathObject& print, const exporter::L
 
 exporter::LevelSetChoices levelSetChoicesOf(Keywords& keywords) {
     exporter::LevelSetChoices choices;
-    choices.print = printOptionsOf(keywords);
+    assemble::readConversion(keywords, choices.print);
     assign(choices.interior, keywords.choice("interior", kInteriors));
     assign(choices.interior_distance, keywords.flag("interior_distance"));
     if (keywords.find("grids"))

@@ -14,7 +14,7 @@
 
 namespace stratum::python {
 
-/// printOptionsOf() and interior, interior_distance, grids, unit, up, origin. Throws UsageError.
+/// assemble::readConversion() and interior, interior_distance, grids, unit, up, origin. Throws UsageError.
 exporter::LevelSetChoices levelSetChoicesOf(Keywords& options);
 
 /// The level set first, then the attributes, with the metadata of gcode2vdb. Needs no GIL. Throws UsageError,

@@ -175,8 +175,9 @@ TEST(TracedObjects, EveryMethodTracesTheSameSphere) {
         TracingOptions options;
         options.march = method;
         const TracedObjects objects = readTracedObjects({object}, options);
-        SCOPED_TRACE(marchMethodName(method));
-        EXPECT_EQ(objects.intersector->name(), marchMethodName(marchesBricks(method) ? MarchMethod::brick : method));
+        SCOPED_TRACE(nameOf(assemble::kMarchMethods, method));
+        EXPECT_EQ(objects.intersector->name(),
+                  nameOf(assemble::kMarchMethods, marchesBricks(method) ? MarchMethod::brick : method));
         EXPECT_TRUE(test::hitsFromAbove(*objects.intersector, 1.01, 2.01));
         EXPECT_FALSE(test::hitsFromAbove(*objects.intersector, 3.2, 2.01));
     }

@@ -3,7 +3,7 @@
 //
 // How to build and run it stands in scripts/fuzz.sh. Materials and environments that name files are left out: they have
 // a target of their own.
-#include "assemble/file/scene_file.h"
+#include "assemble/scene_file.h"
 #include "base/error.h"
 #include "fuzz/memory_file.h"
 #include "shade/camera/camera.h"

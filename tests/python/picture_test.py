@@ -126,7 +126,7 @@ class Pictures(unittest.TestCase):
                               ({"march": "sphere"}, "gcode2vdb"), ({"integrator": "pathh"}, "path")):
             with self.assertRaisesRegex((stratum.UsageError, stratum.InputError), text):
                 stratum.render(path, **options)
-        for options, text in (({"size": 10}, "width, height"), ({"eye": (0, 0)}, "three numbers"), ({"sp": 3}, "spp"),
+        for options, text in (({"size": 10}, "the width and the height"), ({"eye": (0, 0)}, "three numbers"), ({"sp": 3}, "spp"),
                               ({"bed": 1}, "True or False")):
             with self.assertRaisesRegex(TypeError, text):
                 stratum.render(path, **options)

@@ -354,7 +354,8 @@ class Errors(unittest.TestCase):
         self.assertIn("filament_colors NAME,NAME,... says which", " ".join(w["text"] for w in mixing.warnings))
         with self.assertRaisesRegex(stratum.InputError, "left by layers, features, objects and tools"):
             stratum.voxelize(stratum.read(path), layers="800:900")
-        for options, words in (({"spp": 99999999}, "^spp 99999999"), ({"view": "x"}, "^view x"), ({"env": "x"}, "^env x"),
+        for options, words in (({"spp": 99999999}, "spp=99999999: expected a whole number from 1 to 65536"),
+                               ({"view": "x"}, "view='x': expected one of iso"), ({"env": "x"}, "^env x"),
                                ({"seconds": -1}, "^seconds -1"), ({"lights": "x"}, "^lights x"),
                                ({"ao_distance": -1, "integrator": "ao"}, ""), ({"f_number": -1}, "^f_number -1")):
             with self.assertRaisesRegex(stratum.UsageError, words) as caught:

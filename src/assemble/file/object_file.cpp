@@ -60,20 +60,14 @@ std::string materialBeside(const std::filesystem::path& folder, const std::strin
     return shade::isBrdfPreset(text) ? text : beside(folder, text);
 }
 
-std::string readUp(JsonSection& section) {
-    std::string up;
-    section.read("file_up", up);
-    if (!up.empty() && up != "y" && up != "z") section.fail("file_up", "y or z");
-    return up;
-}
-
-std::optional<std::array<double, 2>> readColorRange(JsonSection& section, const std::string& color_by) {
-    const std::vector<double> ends = section.numbers("color_range", 2);
-    if (ends.empty()) return std::nullopt;
+std::optional<std::array<double, 2>> readColorRange(OptionSource& options, const std::string& color_by) {
     constexpr double kMost = 1e9;  // of any attribute
+    const std::vector<double> ends = options.numbersOf("color_range", {2}, "two numbers, the lower one first");
+    if (ends.empty()) return std::nullopt;
     if (!(-kMost <= ends[0] && ends[0] < ends[1] && ends[1] <= kMost))
-        section.fail("color_range", "two numbers, the lower one first");
-    if (color_by.empty()) section.fail("color_range", "an attribute in color_by beside it");
+        options.refuse("color_range", "two numbers, the lower one first");
+    if (color_by.empty())
+        options.refuse("color_range", fmt::format("an attribute beside it, in {}", options.called("color_by")));
     return std::array{ends[0], ends[1]};
 }
 
@@ -85,7 +79,7 @@ ObjectOptions readObject(JsonSection section, const std::filesystem::path& folde
     if (object.vdb.empty() == (sdf == nullptr)) section.fail("", "either \"vdb\" or \"sdf\"");
     if (!object.vdb.empty()) object.vdb = (folder / object.vdb).string();
     if (auto transform = section.section("transform")) object.placement = readPlacement(std::move(*transform));
-    object.up = readUp(section);
+    assign(object.up, section.choice("file_up", kUps));
     object.material = readMaterial(section, folder);
     std::string color_by;
     section.read("color_by", color_by);

@@ -1,7 +1,7 @@
 // The objects of a scene file: what stands where, and of what it is made.
 #pragma once
 
-#include "base/json_section.h"
+#include "base/options/json_section.h"
 #include "shade/scene/material.h"
 #include "trace/scene_intersector.h"
 #include "trace/sdf.h"
@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 
 namespace stratum::assemble {
 
@@ -28,12 +29,11 @@ struct ObjectOptions {
 /// Reads one entry of "objects". Throws InputError with the path of what is wrong.
 ObjectOptions readObject(JsonSection section, const std::filesystem::path& folder);
 
-/// The key "file_up": y, z or nothing. Throws InputError.
-std::string readUp(JsonSection& section);
+/// What file_up takes.
+inline constexpr Names<std::string_view, 2> kUps = {{{"z", "z"}, {"y", "y"}}};
 
-/// The key "color_range": values at the ends of the ramp of `color_by`, ascending; nothing if it is not there. Throws
-/// InputError.
-std::optional<std::array<double, 2>> readColorRange(JsonSection& section, const std::string& color_by);
+/// "color_range": values at the ends of the ramp of `color_by`, ascending; nothing if it is not there.
+std::optional<std::array<double, 2>> readColorRange(OptionSource& options, const std::string& color_by);
 
 /// A file beside the scene, if there is one of that name; else the text as it is: a preset.
 std::string beside(const std::filesystem::path& folder, const std::string& text);

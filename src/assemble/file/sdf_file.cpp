@@ -1,7 +1,7 @@
 #include "assemble/file/sdf_file.h"
 
 #include "base/error.h"
-#include "base/json_section.h"
+#include "base/options/json_section.h"
 #include "trace/scene_intersector.h"
 
 #include <fmt/format.h>

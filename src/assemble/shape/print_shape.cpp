@@ -62,7 +62,7 @@ Shape shapeOfPrint(const ObjectOptions& object, const TracingOptions& options, A
     if (!marchesBricks(options.march))
         throw UsageError(
             fmt::format("--march {}: needs a level set; make one of {} with gcode2vdb, or take --march brick",
-                        marchMethodName(options.march), object.vdb));
+                        nameOf(kMarchMethods, options.march), object.vdb));
     Stopwatch watch;
     PrintRequest request = options.prints;
     for (const std::string& name : needs.names())

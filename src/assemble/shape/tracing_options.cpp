@@ -1,27 +1,8 @@
 #include "assemble/shape/tracing_options.h"
 
-#include "base/error.h"
-
-#include <fmt/format.h>
-
 #include <algorithm>
-#include <array>
 
 namespace stratum::assemble {
-namespace {
-
-constexpr std::array<std::string_view, 4> kMarchMethods = {"auto", "brick", "sphere", "vdb"};  // in the enum's order
-
-}  // namespace
-
-MarchMethod parseMarchMethod(std::string_view text) {
-    const auto found = std::find(kMarchMethods.begin(), kMarchMethods.end(), text);
-    if (found == kMarchMethods.end())
-        throw UsageError(fmt::format("--march {}: expected auto, brick, sphere or vdb", text));
-    return static_cast<MarchMethod>(found - kMarchMethods.begin());
-}
-
-std::string_view marchMethodName(MarchMethod method) { return kMarchMethods[static_cast<std::size_t>(method)]; }
 
 bool showsMaterial(const shade::RenderOptions& render) {
     return shade::needsLight(render.integrator) ||

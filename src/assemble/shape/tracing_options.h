@@ -3,6 +3,7 @@
 
 #include "assemble/file/read_events.h"
 #include "assemble/print/print_levels.h"
+#include "base/names.h"
 #include "march/brick/brick_grid.h"
 #include "march/brick/brick_layout.h"
 #include "shade/integrator/render.h"
@@ -24,9 +25,10 @@ enum class MarchMethod {
     sphere,     ///< sphere tracing
     vdb,        ///< OpenVDB's own
 };
-/// "auto", "brick", "sphere", "vdb". Throws UsageError for other texts.
-MarchMethod parseMarchMethod(std::string_view text);
-std::string_view marchMethodName(MarchMethod method);
+inline constexpr Names<MarchMethod, 4> kMarchMethods = {{{"auto", MarchMethod::automatic},
+                                                         {"brick", MarchMethod::brick},
+                                                         {"sphere", MarchMethod::sphere},
+                                                         {"vdb", MarchMethod::vdb}}};
 
 struct TracingOptions {
     MarchMethod march = MarchMethod::automatic;

@@ -1,7 +1,7 @@
 // The limits of a printer in the project's own JSON.
 #pragma once
 
-#include "base/json_section.h"
+#include "base/options/json_section.h"
 #include "gcode/printer/read_options.h"
 
 #include <string_view>

@@ -30,19 +30,19 @@ bool isNumber(const py::handle& value) {
 }  // namespace
 
 std::optional<py::object> Keywords::find(std::string_view name) {
-    known_.emplace_back(name);
+    if (std::find(known_.begin(), known_.end(), name) == known_.end()) known_.emplace_back(name);
     const py::str key(name.data(), name.size());
-    if (!given_.contains(key)) return std::nullopt;
-    py::object value = given_[key];
+    if (!given_->contains(key)) return std::nullopt;
+    py::object value = (*given_)[key];
     if (value.is_none()) return std::nullopt;
-    found_.emplace_back(name);
+    if (std::find(found_.begin(), found_.end(), name) == found_.end()) found_.emplace_back(name);
     return value;
 }
 
 void Keywords::fail(std::string_view name, std::string_view expected) const {
     const py::str key(name.data(), name.size());
-    throw py::type_error(fmt::format("{}(): {}: expected {}, not {}", function_, name, expected,
-                                     py::repr(given_[key]).cast<std::string>()));
+    throw py::type_error(
+        fmt::format("{}: expected {}, not {}", called(name), expected, py::repr((*given_)[key]).cast<std::string>()));
 }
 
 double Keywords::finite(std::string_view name, const py::handle& value) const {
@@ -60,15 +60,7 @@ std::optional<double> Keywords::number(std::string_view name) {
     return finite(name, *value);
 }
 
-std::optional<double> Keywords::number(std::string_view name, double least, double most) {
-    const std::optional<double> value = number(name);
-    if (value && !(*value >= least && *value <= most))
-        throw UsageError(
-            fmt::format("{}(): {}={:g}: expected a number from {:g} to {:g}", function_, name, *value, least, most));
-    return value;
-}
-
-std::optional<int> Keywords::integer(std::string_view name, int least, int most) {
+std::optional<std::int64_t> Keywords::integer(std::string_view name, std::int64_t least, std::int64_t most) {
     const std::optional<py::object> given = find(name);
     if (!given) return std::nullopt;
     if (PyIndex_Check(given->ptr()) == 0 || PyBool_Check(given->ptr()) != 0) fail(name, "a whole number");
@@ -79,7 +71,7 @@ std::optional<int> Keywords::integer(std::string_view name, int least, int most)
     if (overflow != 0 || value < least || value > most)
         throw UsageError(fmt::format("{}(): {}={}: expected a whole number from {} to {}", function_, name,
                                      py::str(*given).cast<std::string>(), least, most));
-    return static_cast<int>(value);
+    return value;
 }
 
 std::optional<bool> Keywords::flag(std::string_view name) {
@@ -96,18 +88,7 @@ std::optional<std::string> Keywords::text(std::string_view name) {
     return textOf(*value);
 }
 
-std::optional<glm::dvec3> Keywords::point(std::string_view name) {
-    const std::optional<py::object> value = find(name);
-    if (!value) return std::nullopt;
-    if (!py::isinstance<py::sequence>(*value) || isText(*value) || py::len(*value) != 3)
-        fail(name, "three numbers, x, y, z");
-    glm::dvec3 point;
-    int axis = 0;
-    for (const py::handle& item : *value) point[axis++] = finite(name, item);
-    return point;
-}
-
-std::vector<double> Keywords::numbers(std::string_view name) {
+std::vector<double> Keywords::list(std::string_view name, char /*separator*/) {
     const std::optional<py::object> value = find(name);
     if (!value) return {};
     if (isNumber(*value)) return {finite(name, *value)};
@@ -130,14 +111,21 @@ std::vector<std::string> Keywords::texts(std::string_view name) {
     return texts;
 }
 
-void Keywords::refuseChoice(std::string_view name, const std::string& given,
-                            std::span<const std::string_view> names) const {
-    throw UsageError(fmt::format("{}(): {}={:?}: expected one of {}{}", function_, name, given, fmt::join(names, ", "),
-                                 didYouMean(given, names)));
+bool Keywords::says(std::string_view name, std::string_view word) {
+    const std::optional<py::object> value = find(name);
+    return value && py::isinstance<py::str>(*value) && value->cast<std::string>() == word;
+}
+
+std::string Keywords::called(std::string_view name) const { return fmt::format("{}(): {}", function_, name); }
+
+void Keywords::refuse(std::string_view name, std::string_view expected) const {
+    const py::str key(name.data(), name.size());
+    throw UsageError(
+        fmt::format("{}={}: expected {}", called(name), py::repr((*given_)[key]).cast<std::string>(), expected));
 }
 
 void Keywords::finish() const {
-    for (const auto& item : given_) {
+    for (const auto& item : *given_) {
         const auto name = item.first.cast<std::string>();
         if (std::find(known_.begin(), known_.end(), name) != known_.end()) continue;
         const std::vector<std::string_view> names(known_.begin(), known_.end());

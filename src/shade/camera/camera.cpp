@@ -68,12 +68,6 @@ struct Axis {
 
 }  // namespace
 
-View parseView(std::string_view text) {
-    if (const auto view = valueOf(kViews, text)) return *view;
-    throw UsageError(fmt::format("--view {}: unknown; choose iso, front, back, left, right, top or bottom{}", text,
-                                 didYouMean(text, listOf(kViews))));
-}
-
 void CameraOptions::validate() const {
     if (!(fov > 0.0 && fov <= 170.0))
         throw UsageError(fmt::format("--fov {}: must be above 0 and at most 170 degrees", fov));

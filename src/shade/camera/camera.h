@@ -25,9 +25,6 @@ inline constexpr Names<View, 7> kViews = {{{"iso", View::iso},
                                            {"top", View::top},
                                            {"bottom", View::bottom}}};
 
-/// Throws UsageError and names the choices.
-View parseView(std::string_view text);
-
 struct CameraOptions {
     View view = View::iso;              ///< used unless `eye` is given; the distance is fitted to what is seen
     std::optional<glm::dvec3> eye;      ///< world space

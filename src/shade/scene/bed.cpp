@@ -65,12 +65,6 @@ BedTexture::Finish matt(const Color& color) { return {std::make_shared<Lambert>(
 
 }  // namespace
 
-BedSurface parseBedSurface(std::string_view text) {
-    if (const auto surface = valueOf(kBedSurfaces, text)) return *surface;
-    throw UsageError(fmt::format("--bed-surface {}: unknown; choose paper, pei or grid{}", text,
-                                 didYouMean(text, listOf(kBedSurfaces))));
-}
-
 BedTexture::BedTexture(BedSurface surface, double mm_per_unit) : surface_(surface), mm_per_unit_(mm_per_unit) {
     switch (surface) {
         case BedSurface::paper:

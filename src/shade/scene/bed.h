@@ -27,9 +27,6 @@ enum class BedSurface : std::uint8_t {
 inline constexpr Names<BedSurface, 3> kBedSurfaces = {
     {{"paper", BedSurface::paper}, {"pei", BedSurface::pei}, {"grid", BedSurface::grid}}};
 
-/// Throws UsageError.
-BedSurface parseBedSurface(std::string_view text);
-
 /// Procedural reflectance and normal by position, unbounded. Immutable.
 class BedTexture {
 public:

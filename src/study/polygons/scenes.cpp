@@ -1,4 +1,4 @@
-#include "assemble/file/scene_file.h"
+#include "assemble/scene_file.h"
 #include "march/brick/brick_intersector.h"
 #include "march/file/sdf_grid.h"
 #include "march/reference/sphere_intersector.h"

@@ -1,7 +1,7 @@
 #include "view/asked/message.h"
 
 #include "base/error.h"
-#include "base/json_section.h"
+#include "base/options/json_section.h"
 
 #include <nlohmann/json.hpp>
 

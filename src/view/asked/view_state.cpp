@@ -2,7 +2,7 @@
 
 #include "assemble/file/object_file.h"
 #include "base/error.h"
-#include "base/json_section.h"
+#include "base/options/json_section.h"
 #include "gcode/toolpath/toolpath.h"
 #include "shade/finish/named_brdf.h"
 #include "shade/integrator/integrator.h"

@@ -1,6 +1,6 @@
 #include "assemble/file/object_file.h"
 
-#include "assemble/file/scene_file.h"
+#include "assemble/scene_file.h"
 #include "base/error.h"
 #include "corpus.h"
 #include "scratch_folder.h"
@@ -74,7 +74,7 @@ TEST(ObjectFile, SaysWhatIsWrong) {
     refused(R"({"vdb": "a.vdb", "transform": {"scale": "big"}})", "objects[0].transform.scale: expected 3 numbers");
     refused(R"({"vdb": "a.vdb", "material": {"0": "x"}})", "objects[0].material.by");
     refused(R"({"sdf": {"sphere": {"radius": 1}}, "color_by": "tool"})", "an sdf has no attributes");
-    refused(R"({"vdb": "a.vdb", "color_range": [1, 2]})", "an attribute in color_by");
+    refused(R"({"vdb": "a.vdb", "color_range": [1, 2]})", "an attribute beside it, in");
     refused(R"({"vdb": "a.vdb", "color_by": "speed", "color_range": [2, 2]})", "the lower one first");
     refused(R"({"sdf": {"spere": {"radius": 1}}})", "objects[0].sdf.spere: unknown key; did you mean 'sphere'");
     refused(R"({"sdf": {"sphere": {"radius": -1}}})", "a sphere's radius is -1");

@@ -9,12 +9,6 @@
 namespace stratum::assemble {
 namespace {
 
-TEST(TracingOptions, MethodsHaveNames) {
-    for (const char* name : {"auto", "brick", "sphere", "vdb"})
-        EXPECT_EQ(marchMethodName(parseMarchMethod(name)), name);
-    EXPECT_THROW((void)parseMarchMethod("bricks"), UsageError);
-}
-
 TEST(TracingOptions, FollowFromThePicture) {
     shade::SceneOptions scene;
     shade::RenderOptions render;

@@ -91,7 +91,7 @@ TEST(Camera, ViewsLookWhereTheirNamesSay) {
     const trace::Box box{{-1, -1, -1}, {1, 1, 1}};
     const auto eye = [&](const char* name) {
         CameraOptions options;
-        options.view = shade::parseView(name);
+        options.view = valueOf(shade::kViews, name).value();
         return Camera::make(options, box, 100, 100).eye();
     };
     EXPECT_LT(eye("front").y, -1);

@@ -87,10 +87,5 @@ TEST(BedTexture, PeiHasTheNormalsOfASurface) {
     }
 }
 
-TEST(BedTexture, IsChosenByName) {
-    EXPECT_EQ(shade::parseBedSurface("pei"), BedSurface::pei);
-    EXPECT_THROW(shade::parseBedSurface("glass"), UsageError);
-}
-
 }  // namespace
 }  // namespace stratum

@@ -1,4 +1,4 @@
-#include "assemble/file/scene_file.h"
+#include "assemble/scene_file.h"
 
 #include "base/error.h"
 #include "scratch_folder.h"
@@ -37,7 +37,7 @@ TEST(SceneFile, ReadsEveryKey) {
     EXPECT_EQ(file.render.checkpoint, "part.state");
     EXPECT_TRUE(file.denoise);
     EXPECT_EQ(file.file_up, "y");
-    EXPECT_EQ(file.tone.exposure, -1.5);
+    EXPECT_EQ(file.exposure, -1.5);
     EXPECT_EQ(file.render.aovs.size(), 2u);
     EXPECT_EQ(file.scene.brdf, "lambert:1,1,1");
     EXPECT_FALSE(file.scene.bed);
@@ -81,13 +81,13 @@ TEST(SceneFile, SaysWhatIsWrong) {
     refused(R"({"print": "p.vdb", "enviroment": {}})", "did you mean 'environment'");
     refused(R"({"print": "p.vdb", "camera": {"fow": 3}})", "camera.fow: unknown key; did you mean 'fov'");
     refused(R"({"print": "p.vdb", "camera": 3})", "camera: expected an object");
-    refused(R"({"print": "p.vdb", "size": [1]})", "size: expected 2 numbers");
+    refused(R"({"print": "p.vdb", "size": [1]})", "size: expected the width");
     refused(R"({"print": "p.vdb", "spp": -3})", "spp: expected a whole number");
     refused(R"({"print": "p.vdb", "spp": 1e99})", "spp");
     refused(R"({"print": "p.vdb", "bed": 1})", "bed: expected true or false");
     refused(R"({"print": "p.vdb", "lights": [1]})", "lights");
     refused(R"({"print": "p.vdb", "denoise": 1})", "denoise: expected true or false");
-    refused(R"({"print": "p.vdb", "file_up": "x"})", "file_up: expected y or z");
+    refused(R"({"print": "p.vdb", "file_up": "x"})", "file_up: expected one of z, y");
     refused(R"({"file_up": "y", "objects": [{"vdb": "p.vdb"}]})", "file_up");
     refused(R"([1])", "the file: expected an object");
 }

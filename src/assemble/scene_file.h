@@ -2,12 +2,9 @@
 #pragma once
 
 #include "assemble/file/object_file.h"
-#include "shade/film/tonemap.h"
-#include "shade/integrator/render.h"
-#include "shade/scene/scene.h"
+#include "assemble/picture_request.h"
 
 #include <filesystem>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -15,19 +12,11 @@
 namespace stratum::assemble {
 
 /// All that makes a picture. docs/shading.md has the schema with an example.
-struct SceneFile {
+struct SceneFile : PictureRequest {
     std::string print;                   ///< the level set; empty if there are `objects`
-    std::string grid;                    ///< empty: chosen as by --grid
     std::string output;                  ///< empty: named after the scene file; relative to the working directory
     std::vector<ObjectOptions> objects;  ///< empty: `print` alone
     std::vector<std::string> notes;      ///< what a report must say, e.g. the residual of a solved pose
-    shade::SceneOptions scene;
-    shade::RenderOptions render;
-    std::string file_up;          ///< of `print`: "y", "z", or empty for what the file says
-    std::optional<bool> denoise;  ///< empty: left to the default
-    bool spp_given = false;       ///< whether the file says how many samples, or leaves them to the default
-    bool exposure_given = false;  ///< whether it says how bright the picture or the map is to be
-    shade::ToneOptions tone;
 };
 
 /// Whether a text looks like a scene: its first character is a brace.
