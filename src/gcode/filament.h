@@ -13,9 +13,9 @@
 
 namespace stratum::gcode {
 
-/// Fills filament_diameter, filament_mm, prime_mm, extruded_mm3, extrusion_rule and the footers. On entry the beads'
-/// widths are areas in mm^2; they are scaled, with a warning, if the diameter is known only from the volume in a
-/// Griffin header. True if the diameter is known.
+/// Fills filament_diameter, filament_mm, prime_mm, flushed_mm, extruded_mm3, extrusion_rule and the footers.
+/// On entry the beads' widths are areas in mm^2; they are scaled, with a warning, if the diameter is known only from
+/// the volume in a Griffin header. True if the diameter is known.
 bool takeFilament(const Footer& footer, const Machine& machine, Toolpath& toolpath, WarningLog& warnings);
 
 /// For a toolpath whose diameter is not known: tells 2.85 mm from 1.75 mm by the median of area / height, the width of

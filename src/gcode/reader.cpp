@@ -165,6 +165,8 @@ Toolpath readToolpath(std::string_view bytes, std::string_view name, const ReadO
     ReadOptions read = options;
     read.belt_angle = beltAngle(options, settings.stated, warnings);
     BeadRecorder recorder(nominal.value_or(0.2), text.size() / kBytesPerBead, warnings);
+    for (const std::string_view kin : {"Slic3r", "PrusaSlicer", "SuperSlicer"})
+        if (settings.slicer.starts_with(kin)) recorder.letMarksRepeat();
     Machine machine(settings, read, name, recorder, warnings);
     std::optional<MotionRecorder> motion;
     if (options.motion != nullptr) {

@@ -32,10 +32,16 @@ double at(const std::vector<double>& list, std::size_t tool) { return tool < lis
 
 void describeFilament(const Toolpath& toolpath, fmt::memory_buffer& out) {
     const std::size_t tools = std::max(toolpath.filament_by_tool.size(), toolpath.footer_by_tool.size());
-    // Some slicers count the prime lines of the start program, others don't: the nearer sum is compared.
-    const double all = toolpath.filament_mm + toolpath.flushed_mm;
-    const double part = all - toolpath.prime_mm;
+    // Some slicers count the prime lines of the start program, or what they push out in place, others don't: the
+    // nearest sum is compared.
     const double footer = toolpath.footer_mm;
+    double all = toolpath.filament_mm + toolpath.flushed_mm;
+    const auto miss = [&](double sum) {
+        return std::min(std::abs(sum - footer), std::abs(sum - toolpath.prime_mm - footer));
+    };
+    const bool primed = toolpath.primed_mm > 0 && footer > 0 && miss(all + toolpath.primed_mm) < miss(all);
+    if (primed) all += toolpath.primed_mm;
+    const double part = all - toolpath.prime_mm;
     const bool primes = toolpath.prime_mm > 0;
     const bool part_alone = primes && (!(footer > 0) || std::abs(part - footer) <= std::abs(all - footer));
     fmt::format_to(std::back_inserter(out), "E is {}\n{}: ", toolpath.extrusion_rule, part_alone ? "part" : "all");
@@ -43,6 +49,9 @@ void describeFilament(const Toolpath& toolpath, fmt::memory_buffer& out) {
     if (toolpath.flushed_mm > 0)
         fmt::format_to(std::back_inserter(out), "flushed while filaments change: {:.2f} mm, which are in that sum\n",
                        toolpath.flushed_mm);
+    if (toolpath.primed_mm > 0.5)
+        fmt::format_to(std::back_inserter(out), "pushed out in place between lines: {:.2f} mm, in no bead{}\n",
+                       toolpath.primed_mm, primed ? ", but in that sum" : "");
     if (primes)
         fmt::format_to(std::back_inserter(out), "prime lines before layer 1: {:.2f} mm{}\n", toolpath.prime_mm,
                        part_alone ? "" : ", which are in that sum");

@@ -297,6 +297,8 @@ void addFacts(py::class_<ToolpathObject>& type) {
     fact("cut_short", &gcode::Toolpath::cut_short, "Why the program seems truncated; empty if it doesn't.");
     fact("filament_mm", &gcode::Toolpath::filament_mm, "mm of filament in the beads.");
     fact("prime_mm", &gcode::Toolpath::prime_mm, "The part of it that prime lines before layer 1 take.");
+    fact("primed_mm", &gcode::Toolpath::primed_mm,
+         "Pushed out in place between lines beyond what was drawn back, in no bead.");
     fact("extruded_mm3", &gcode::Toolpath::extruded_mm3, "mm^3 that the file extrudes into the beads.");
     type.def_property_readonly(
             "warnings", [](const ToolpathObject& self) { return warningsOf(*self.toolpath); },

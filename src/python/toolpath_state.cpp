@@ -21,7 +21,7 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "states are little endian");
 
 constexpr std::string_view kMagic = "stratum.Toolpath";
-constexpr std::uint32_t kVersion = 5;  // changes with every field
+constexpr std::uint32_t kVersion = 6;  // changes with every field
 constexpr const char* kRemedy = "; read the G-code again";
 
 /// Values one after the other, as the machine holds them. Reader has the same functions.
@@ -178,7 +178,7 @@ void visitToolpath(Archive& archive, Path& toolpath) {
     auto& [beads, arcs, runs, objects, warnings, slicer, firmware, format, filament_diameter, layer_height, deposit,
            layer_count, belt_angle, tool_colors, palette_tools, color_changes, temperatures, fans, timing, flow,
            filament_by_tool, footer_by_tool, footer_mm, stated, extrusion_rule, firmware_reason, cut_short, filament_mm,
-           prime_mm, flushed_mm, extruded_mm3] = toolpath;
+           prime_mm, flushed_mm, primed_mm, extruded_mm3] = toolpath;
     archive.records(beads);
     archive.each(arcs, [&archive](auto& item) {
         auto& [center_x, center_y, sweep, line] = item;
@@ -206,7 +206,8 @@ void visitToolpath(Archive& archive, Path& toolpath) {
     archive.records(flow);
     archive.values(filament_by_tool, footer_by_tool, footer_mm);
     visitStated(archive, stated);
-    archive.values(extrusion_rule, firmware_reason, cut_short, filament_mm, prime_mm, flushed_mm, extruded_mm3);
+    archive.values(extrusion_rule, firmware_reason, cut_short, filament_mm, prime_mm, flushed_mm, primed_mm,
+                   extruded_mm3);
 }
 static_assert(sizeof(gcode::Bead) == 60 && sizeof(gcode::Run) == 16 && sizeof(gcode::BeadTiming) == 24 &&
                   sizeof(gcode::BeadFlow) == 12 && sizeof(motion::Travel) == 96,

@@ -274,7 +274,7 @@ class Arrays(unittest.TestCase):
 
 
 FIELDS = ("objects", "slicer", "firmware", "format", "filament_diameter", "layer_height", "layer_count", "extrusion_rule",
-          "cut_short", "filament_mm", "prime_mm", "extruded_mm3", "warnings", "stated", "times", "source")
+          "cut_short", "filament_mm", "prime_mm", "primed_mm", "extruded_mm3", "warnings", "stated", "times", "source")
 
 
 class Pickles(unittest.TestCase):

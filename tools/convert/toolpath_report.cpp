@@ -88,6 +88,7 @@ Json describeToolpath(const gcode::Toolpath& toolpath) {
             {"filament_mm", toolpath.filament_mm},
             {"prime_mm", toolpath.prime_mm},
             {"flushed_mm", toolpath.flushed_mm},
+            {"primed_mm", toolpath.primed_mm},
             {"footer_mm", footer},
             {"filament_diameter_mm", toolpath.filament_diameter},
             {"volume_mm3", volume},

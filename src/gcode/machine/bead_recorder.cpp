@@ -43,7 +43,7 @@ void BeadRecorder::tag(const Tag& tag, std::uint32_t line) {
                 warnings_.add(fmt::format("unknown feature name \"{}\"", tag.text.substr(0, 60)), line);
             break;
         case Tag::Kind::height:
-            next_.height = static_cast<float>(intendedHeight(tag.height));
+            next_.height = static_cast<float>(intendedHeight(squeezed(tag.height)));
             break;
         case Tag::Kind::layer_change:
             markLayer(tag);
@@ -105,6 +105,7 @@ void BeadRecorder::changeMix(ToolMix mix, std::uint32_t line) {
 void BeadRecorder::restartLayers() {
     for (Run& run : toolpath_.runs) run.layer = 0;
     next_.layer = 0;
+    toolpath_.primed_mm = 0;
 }
 
 void BeadRecorder::startPart() {
@@ -120,6 +121,13 @@ double BeadRecorder::intendedHeight(double mm) {
     return std::max(std::abs(mm - micrometres) < kRounding ? micrometres : std::round(mm * 1e5) / 1e5, 1e-3);
 }
 
+// Simplify3D lowers the nozzle on the first layer ("first layer height 80 %") and tags the height of the others. Much
+// lower it makes up for a bed that lies deeper.
+double BeadRecorder::squeezed(double height) const {
+    const bool first = next_.layer == 1 && mark_ == "layer" && mark_z_;
+    return first && *mark_z_ < height && *mark_z_ >= 0.5 * height ? *mark_z_ : height;
+}
+
 void BeadRecorder::markLayer(const Tag& mark) {
     if (!layer_marks_) {
         // The file has marks, so the beads counted by z so far came before the first layer.
@@ -132,6 +140,8 @@ void BeadRecorder::markLayer(const Tag& mark) {
     if (mark.height > 0) tag({.kind = Tag::Kind::height, .height = mark.height}, 0);
     if (again) return;
     if (!same_z) ++next_.layer;
+    // The next bead's z tells.
+    repeats_ = marks_repeat_ && mark.text == "LAYER:" && toolpath_.beads.size() > beads_before_mark_ && next_.layer > 1;
     if (mark.raft || on_raft_ > 0) markOnRaft(mark.raft);
     mark_ = mark.text;
     mark_z_ = mark.z;
@@ -152,7 +162,11 @@ void BeadRecorder::markOnRaft(bool raft) {
 
 void BeadRecorder::finish() {
     auto& runs = toolpath_.runs;
-    if (!layer_marks_ || std::any_of(runs.begin(), runs.end(), [](const Run& run) { return run.layer > 0; })) return;
+    if (!layer_marks_ || std::any_of(runs.begin(), runs.end(), [](const Run& run) { return run.layer > 1; })) return;
+    // One mark above a print that rises all the same, by somebody who cut the others out.
+    constexpr std::size_t kRisen = 3;  // levels
+    const bool marked = std::any_of(runs.begin(), runs.end(), [](const Run& run) { return run.layer > 0; });
+    if (marked && levels(kRisen) < kRisen) return;
     layer_marks_ = false;
     next_.layer = 0;
     std::size_t done = 0;
@@ -162,6 +176,18 @@ void BeadRecorder::finish() {
         countLayer(from, to, std::abs(to.z - from.z) > kSameZ);
         for (; done <= bead.run; ++done) runs[done].layer = next_.layer;
     }
+}
+
+std::size_t BeadRecorder::levels(std::size_t most) const {
+    std::size_t count = 0;
+    double highest = -std::numeric_limits<double>::infinity();
+    for (const Bead& bead : toolpath_.beads) {
+        if (count == most) break;
+        if (bead.z0 != bead.z1 || !(bead.z1 > highest + kSameLevel)) continue;
+        highest = bead.z1;
+        ++count;
+    }
+    return count;
 }
 
 void BeadRecorder::startObject(std::string_view name, std::uint32_t line) {
@@ -207,6 +233,10 @@ void BeadRecorder::add(const Point& from, const Point& to, const std::optional<A
             "lines of more than a metre that are thinner than 0.02 mm are left out; is a number damaged?", line);
     const bool sloped = std::abs(to.z - from.z) > kSameZ;
     if (!layer_marks_) countLayer(from, to, sloped);
+    if (std::exchange(repeats_, false)) {
+        const Bead& last = toolpath_.beads.back();
+        if (!sloped && to.z == last.z1 && last.z0 == last.z1) --next_.layer;
+    }
     // If the height is unknown, a run has one level, because the height will follow from the level.
     const double run_z = sloped ? std::numeric_limits<double>::quiet_NaN() : to.z;
     const bool same_level =

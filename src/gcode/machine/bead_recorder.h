@@ -23,6 +23,8 @@ public:
     /// `nominal_height` (mm) separates the layers of a spiral.
     BeadRecorder(double nominal_height, std::size_t expected_beads, WarningLog& warnings);
 
+    /// Slic3r and its kin write no numbered marks: a user's own program does, for each object of a layer.
+    void letMarksRepeat() { marks_repeat_ = true; }
     void tag(const Tag& tag, std::uint32_t line);
     /// The start program ends here: in files without layer marks, what was laid before is no part of the print.
     void startPart();
@@ -45,6 +47,8 @@ public:
     /// A tool lays another mix of filaments from here on.
     void changeMix(ToolMix mix, std::uint32_t line);
     const std::vector<MixChange>& mixes() const { return mixes_; }
+    /// Filament (mm) is pushed out in place beyond what was drawn back. Counts between lines of the print alone.
+    void prime(double mm) { toolpath_.primed_mm += next_.layer > 0 ? mm : 0; }
     /// mm, as tagged; 0 if unknown.
     double height() const { return static_cast<double>(next_.height); }
 
@@ -60,7 +64,10 @@ public:
 private:
     void changeColor(std::uint8_t tool, std::optional<Rgb> color, std::uint32_t line);
     static double intendedHeight(double mm);
+    double squeezed(double height) const;
     void markLayer(const Tag& tag);
+    /// How often level beads rise, counted up to `most`.
+    std::size_t levels(std::size_t most) const;
     void markOnRaft(bool raft);
     void restartLayers();
     void countLayer(const Point& from, const Point& to, bool sloped);
@@ -76,7 +83,9 @@ private:
     std::string_view mark_;         // the words of the last layer mark
     std::optional<double> mark_z_;  // its z, if it states one
     std::size_t beads_before_mark_ = 0;
-    int on_raft_ = 0;  // layer marks until heights are those of the levels again
+    bool marks_repeat_ = false;
+    bool repeats_ = false;  // the mark may be of the layer before it
+    int on_raft_ = 0;       // layer marks until heights are those of the levels again
     double first_z_ = 0;
     double layer_z_ = 0;
     std::unordered_map<std::string, std::uint16_t> object_index_;

@@ -178,6 +178,10 @@ void Machine::executeG(const Command& command) {
             return;
         case 28:
             return home(command);
+        case 161:
+        case 162:
+            makerbot_ = true;
+            return;
         case 53:
         case 54:
         case 55:
@@ -185,7 +189,8 @@ void Machine::executeG(const Command& command) {
         case 57:
         case 58:
         case 59:
-            return frame_.select(workspaceOf(command));
+            if (!makerbot_) frame_.select(workspaceOf(command));
+            return;
         case 60:
             return storePosition(command);
         case 61:

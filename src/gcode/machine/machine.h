@@ -191,6 +191,9 @@ private:
     bool m83_ = false;             // the last of M82 and M83 was M83
     bool volumetric_ = false;
     bool motor_on_ = false;  // between M101 and M103, in files without E
+    // Homes by G161 and G162: a workspace is then the place of a tool's nozzle in the head, which the slicer has
+    // subtracted, and G92 holds in all of them (GPX, gpx.c).
+    bool makerbot_ = false;
     std::size_t tool_ = 0;
     Mixer mixer_;
     double feed_ = 0;

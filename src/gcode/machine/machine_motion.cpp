@@ -308,8 +308,10 @@ double Machine::extrudedOf(double drive, bool in_place) {
     const double mm = volumetric_ ? drive / filamentArea() : drive;
     const std::size_t nozzle = settings_.shared_nozzle ? 0 : tool_;
     if (flushing_ && in_place) flushed_ += mm;
+    constexpr double kRounding = 2e-3;  // mm, of a file's numbers
     double& drawn_back = drawn_back_[nozzle];
     bool& unloaded = unloaded_[nozzle];
+    if (in_place && !flushing_ && !unloaded && mm > drawn_back + kRounding) recorder_.prime(mm - drawn_back);
     if (drive < 0) {
         drawn_back -= mm;
         if (drawn_back > kUnloaded) unloaded = true;
@@ -321,8 +323,7 @@ double Machine::extrudedOf(double drive, bool in_place) {
     }
     // A retraction that is taken back in part, or on the way, comes first ("extra restart distance" below 0 of
     // Simplify3D, Slic3r 0.9). What is drawn back farther is brought back by macros that the file does not show.
-    constexpr double kMostOwed = 10;    // mm
-    constexpr double kRounding = 2e-3;  // mm, of a file's numbers
+    constexpr double kMostOwed = 10;  // mm
     if (!unloaded && (drawn_back < kRounding || drawn_back > kMostOwed)) drawn_back = 0;
     const double fetched = std::min(drawn_back, mm);
     if (unloaded && !in_place && fetched > 0 && !settings_.shared_nozzle)

@@ -66,19 +66,23 @@ public:
         }
         const bool plan = command.has('X') || command.has('Y');
         if (command.hasValue('E')) return extrusion(plan, command.value('E'));
+        bare_on_ = bare_on_ || (plan && on_);
         if (plan && (command.hasValue('A') || command.hasValue('B'))) ab_ = true;
         return true;
     }
 
     ExtrusionScan result() const {
         using Drive = ExtrusionScan::Drive;
+        // Skeinforge's own moves have no E; a purge in the start program may.
+        if (bare_on_ && !e_on_ && !mode_) return {.drive = Drive::switched};
         if (!e_) return {.drive = ab_ && !spindle_ ? Drive::axes_ab : switch_ ? Drive::switched : Drive::e_word};
         return {.falls_back = changes_.areIncrements(), .mode_follows = mode_follows_, .repeats = changes_.repeat()};
     }
 
 private:
     bool miscellaneous(int code) {
-        if (code == 101) switch_ = true;
+        if (code == 101) switch_ = on_ = true;
+        if (code == 103) on_ = false;
         if (code == 3 || code == 4) spindle_ = true;
         if (code == 82 || code == 83) {
             mode_ = true;
@@ -89,6 +93,7 @@ private:
 
     bool extrusion(bool plan, double value) {
         e_ = true;
+        e_on_ = e_on_ || on_;
         if (mode_) return false;
         changes_.add(plan, value);
         return !changes_.enough();
@@ -98,6 +103,9 @@ private:
     bool mode_ = false;
     bool mode_follows_ = false;
     bool switch_ = false;
+    bool on_ = false;       // between M101 and M103
+    bool e_on_ = false;     // E moves there
+    bool bare_on_ = false;  // moves there have none
     bool ab_ = false;
     bool spindle_ = false;  // then A and B turn what is milled
     bool e_ = false;

@@ -39,6 +39,8 @@ constexpr std::array kFeatureTypes{
     Name{"unknown", Feature::unknown},
     Name{"travel", Feature::unknown},
     Name{"milling", Feature::unknown},
+    // CreatWare
+    Name{"inner perimeter", Feature::perimeter},
     // Mosaic's Canvas, fiberslice
     Name{"wall outer", Feature::external_perimeter},
     Name{"wall inner", Feature::perimeter},
@@ -110,12 +112,29 @@ constexpr std::array kBareNames{
     Name{"ooze shield", Feature::wipe_tower},
     Name{"single extrusion", Feature::perimeter},
     Name{"gap", Feature::gap_fill},
+    // Kiri:Moto of Lychee
+    Name{"shells", Feature::perimeter},
     // IceSL's own words
     Name{"shell", Feature::perimeter},
     Name{"cover", Feature::solid_infill},
     Name{"curved cover", Feature::top_infill},
     Name{"shield", Feature::wipe_tower},
     Name{"tower", Feature::wipe_tower},
+};
+
+// Capitalised comments of Miracle-Grue and, the last, REALvision.
+constexpr std::array kMoveComments{
+    Name{"outline", Feature::external_perimeter},
+    Name{"inset", Feature::perimeter},
+    Name{"infill", Feature::infill},
+    Name{"support", Feature::support},
+    Name{"raft", Feature::support},
+    Name{"bridge", Feature::bridge},
+    Name{"spur", Feature::gap_fill},
+    Name{"outlines:", Feature::external_perimeter},
+    Name{"insets:", Feature::perimeter},
+    Name{"infills:", Feature::infill},
+    Name{"contour", Feature::external_perimeter},
 };
 
 // CraftWare's ";segType:", which IceSL can write too.
@@ -166,6 +185,7 @@ std::optional<Feature> lookUp(const std::array<Name, n>& names, std::string_view
 
 std::optional<Feature> featureOfType(std::string_view name) { return lookUp(kFeatureTypes, name); }
 std::optional<Feature> featureOfBareName(std::string_view name) { return lookUp(kBareNames, name); }
+std::optional<Feature> featureOfMoveComment(std::string_view name) { return lookUp(kMoveComments, name); }
 std::optional<Feature> featureOfSegment(std::string_view name) { return lookUp(kSegmentNames, name); }
 std::optional<Feature> featureOfPath(std::string_view name) { return lookUp(kPathNames, name); }
 

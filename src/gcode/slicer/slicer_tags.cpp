@@ -5,6 +5,8 @@
 #include "gcode/text/limits.h"
 #include "gcode/text/number.h"
 
+#include <algorithm>
+
 namespace stratum::gcode {
 namespace {
 
@@ -95,6 +97,12 @@ Tag ofMarkup(std::string_view text) {
     if (text.starts_with("<loop>")) return {.kind = Tag::Kind::feature, .feature = Feature::perimeter};
     if (text.starts_with("<infill>")) return {.kind = Tag::Kind::feature, .feature = Feature::infill};
     if (text.starts_with("<supportLayer>")) return {.kind = Tag::Kind::feature, .feature = Feature::support};
+    // Before it had a tag, what stands behind a line that is closed was infill.
+    for (const std::string_view end :
+         {"</edge>", "</perimeter>", "</perimeterPath>", "</boundaryPerimeter>", "</loop>"})
+        if (text.starts_with(end)) return {.kind = Tag::Kind::feature, .feature = Feature::infill};
+    for (const std::string_view end : {"</infill>", "</supportLayer>"})
+        if (text.starts_with(end)) return {.kind = Tag::Kind::feature, .feature = Feature::unknown, .text = "unknown"};
     return {};
 }
 
@@ -111,6 +119,16 @@ Tag ofColorChange(std::string_view text) {
     const auto color = text.find('#');
     if (color != std::string_view::npos) tag.text = text.substr(color, 7);
     return tag;
+}
+
+// REALvision; MakerWare's slicer Miracle-Grue, behind each move: "Infill", where Cura's ";BRIDGE" is none. Its first
+// version before several: "insets: 2", "inset path, length: 4".
+Tag ofMoveComment(std::string_view text) {
+    if (text.size() < 2 || text[1] < 'a' || text[1] > 'z') return {};
+    if (const auto count = text.find(": "); count != std::string_view::npos)
+        text = text.substr(0, std::min(count + 1, text.find(" path,")));
+    const auto feature = featureOfMoveComment(text);
+    return feature ? Tag{.kind = Tag::Kind::feature, .feature = *feature, .text = text} : Tag{};
 }
 
 Tag ofObject(std::string_view name) { return {.kind = Tag::Kind::object_start, .text = name}; }
@@ -132,7 +150,7 @@ Tag parseTag(std::string_view comment) {
             return ofPath(text);
         case 'B':
             if (take(text, "BEGIN_LAYER_")) return ofBegunLayer(text);
-            break;
+            return ofMoveComment(text);
         case 'P':  // ideaMaker
             if (take(text, "PRINTING:"))
                 return text == "NON-OBJECT" ? Tag{.kind = Tag::Kind::object_stop} : ofObject(text);
@@ -166,7 +184,7 @@ Tag parseTag(std::string_view comment) {
             if (take(text, "CHANGE_LAYER")) return layerChange("CHANGE_LAYER");
             if (text.starts_with("CP TOOLCHANGE WIPE")) return {.kind = Tag::Kind::filament_loaded};
             if (take(text, "COLOR_CHANGE")) return ofColorChange(text);
-            break;
+            return ofMoveComment(text);
         case 'M':
             if (take(text, "MESH:")) return text == "NONMESH" ? Tag{.kind = Tag::Kind::object_stop} : ofObject(text);
             break;
@@ -175,6 +193,14 @@ Tag parseTag(std::string_view comment) {
             break;
         case 'l':
             if (take(text, "layer ")) return ofNumberedLayer(text);
+            break;
+        case 'I':
+        case 'O':
+        case 'R':
+        case 'S':
+        case 'i':
+        case 'o':
+            if (const Tag tag = ofMoveComment(text); tag.kind != Tag::Kind::none) return tag;
             break;
         case 't':
             if (take(text, "tool ")) return ofToolShape(text);
@@ -185,6 +211,7 @@ Tag parseTag(std::string_view comment) {
         case 's':
             if (take(text, "start printing object, ")) return ofObject(text);
             if (take(text, "segType:")) return ofSegment(text);
+            if (text.starts_with("support path,")) return ofMoveComment(text);
             if (text.starts_with("set units to ")) return {.kind = Tag::Kind::units_set};
             if (take(text, "stop printing object")) return {.kind = Tag::Kind::object_stop};
             break;

@@ -25,7 +25,7 @@ constexpr std::array kTrailers{
     Trailer{"BambuStudio", {"; EXECUTABLE_BLOCK_END", "; filament end gcode", "; filament used ["}},
     Trailer{"Flash Studio", {"; EXECUTABLE_BLOCK_END", "; CONFIG_BLOCK_END", "; filament used ["}},
     Trailer{"Slic3r", {"; filament used = ", "; filament used [", "; top_solid_layers = "}},
-    Trailer{"Cura 15", {";CURA_PROFILE_STRING:"}},
+    Trailer{"Cura 15", {}},  // its first versions wrote nothing there
     Trailer{"Cura", {";End of Gcode", ";SETTING_3 ", ";End of gcode", ";CURA_PROFILE_STRING:"}},
     Trailer{"Simplify3D", {"; Build Summary", ";   Build time: ", ";   Plastic volume: "}},
     Trailer{"ideaMaker", {";Material#1 Used", ";Print Time: ", ";Material#2 Used"}},
@@ -68,6 +68,7 @@ std::string findCut(std::string_view bytes, std::string_view slicer) {
     const std::string_view tail = bytes.substr(bytes.size() - std::min(bytes.size(), kTrailerReach));
     for (const Trailer& trailer : kTrailers) {
         if (slicer.find(trailer.slicer) == std::string_view::npos) continue;
+        if (trailer.any_of.front().empty()) break;
         const bool there = std::any_of(trailer.any_of.begin(), trailer.any_of.end(), [tail](std::string_view text) {
             const auto at = text.empty() ? std::string_view::npos : tail.rfind(text);
             return at != std::string_view::npos && !moves(tail.substr(at));

@@ -176,7 +176,8 @@ private:
         if (parseNumber(next, end_, value)) {
             command_->set(letter, value);
             p_ = next;
-        } else if (next != end_ && *next == '{') {
+        } else if (next != end_ && (*next == '{' || *next == '[')) {
+            // "[first_layer_height]": a slicer's name that nobody has replaced.
             command_->setExpression(letter);
             p_ = behindBraces(next);
         } else {
@@ -201,8 +202,8 @@ private:
     const char* behindBraces(const char* p) const {
         int depth = 0;
         for (; p != end_; ++p) {
-            if (*p == '{') ++depth;
-            if (*p == '}' && --depth == 0) return p + 1;
+            if (*p == '{' || *p == '[') ++depth;
+            if ((*p == '}' || *p == ']') && --depth == 0) return p + 1;
         }
         return p;
     }

@@ -192,7 +192,7 @@ void StatedReader::pair(std::string_view key, std::string_view value) {
 void StatedReader::sentence(std::string_view key, std::string_view value) {
     if (key == "TIME" || key == "PRINT.TIME" || key == "Print Time" || key == "Print time" || key == "print time" ||
         key == "Build time" || key == "Estimated Build Time" || key == "total estimated time" ||
-        key == "estimated_time(s)" || key == "Estimated Print Time") {
+        key == "estimated_time(s)" || key == "Estimated Print Time" || key == "Duration") {  // the last: Miracle-Grue
         if (const auto time = parseDuration(value)) facts_.seconds = time;
     } else if (key == "TIME_ELAPSED") {
         elapsed_ = parseDuration(value);

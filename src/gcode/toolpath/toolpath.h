@@ -193,7 +193,9 @@ struct Toolpath {
     std::string cut_short;        ///< why the program seems truncated; empty if it doesn't
     double filament_mm = 0;       ///< positive E of the beads as the file counts it, in mm of filament
     double prime_mm = 0;          ///< the part of it that is laid before the first layer: prime lines (layer 0)
-    double flushed_mm = 0;    ///< pushed out in place while filaments change, in no bead; BambuStudio's sums have it
+    double flushed_mm = 0;  ///< pushed out in place while filaments change, in no bead; BambuStudio's sums have it
+    /// Pushed out in place between lines beyond what was drawn back ("extra length on restart"), in no bead.
+    double primed_mm = 0;
     double extruded_mm3 = 0;  ///< the same as volume, times the flow factor (M221): the expected sum of all beads
 
     const Run& runOf(const Bead& bead) const { return runs[bead.run]; }

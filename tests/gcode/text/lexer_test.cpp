@@ -82,7 +82,7 @@ INSTANTIATE_TEST_SUITE_P(
         LexedLine{"PRINT_START BED=110", "<PRINT_START>"}, LexedLine{"print_end ; bye", "<print_end>| bye"},
         LexedLine{"SET_PIN PIN=a VALUE=1", "<SET_PIN>"}, LexedLine{"G1 Xnan", "<G1 A? N? X?>"},
         LexedLine{"G1 X--5", "<G1 X?>!"}, LexedLine{"G1 X1.2.3", "<G1 X1.2>!"}, LexedLine{"G1 X1 \xC3\xA9", "<G1 X1>!"},
-        LexedLine{"123", "!"}, LexedLine{"@pause", "<pause>!"}, LexedLine{"M109 S[temp] T0", "<M109 E? M? P? S? T0>!"},
+        LexedLine{"123", "!"}, LexedLine{"@pause", "<pause>!"}, LexedLine{"M109 S[temp] T0", "<M109 S{} T0>"},
         LexedLine{"\xEF\xBB\xBFG1 X1", "<G1 X1>"}, LexedLine{"G99999999999999999999", "<G9999999>"}));
 
 INSTANTIATE_TEST_SUITE_P(TextIsNoCommand, LexerLine,
