@@ -1,6 +1,7 @@
 #include "gcode/reader.h"
 
 #include "base/error.h"
+#include "base/utf8.h"
 #include "gcode/container/container.h"
 #include "gcode/filament.h"
 #include "gcode/machine/bead_recorder.h"
@@ -142,6 +143,16 @@ std::optional<double> beltAngle(const ReadOptions& options, const StatedFacts& s
     return {};
 }
 
+// Once for all who show it: JSON, pages and Python take nothing else.
+void makeTextUtf8(Toolpath& toolpath) {
+    StatedFacts& stated = toolpath.stated;
+    for (std::string* text : {&toolpath.slicer, &toolpath.firmware_reason, &toolpath.extrusion_rule, &stated.printer})
+        *text = utf8Text(*text);
+    for (auto* list : {&toolpath.objects, &stated.materials, &stated.profiles})
+        for (std::string& text : *list) text = utf8Text(text);
+    for (Warning& warning : toolpath.warnings) warning.text = utf8Text(warning.text);
+}
+
 }  // namespace
 
 Toolpath readToolpath(std::string_view bytes, std::string_view name, const ReadOptions& options) {
@@ -213,6 +224,7 @@ Toolpath readToolpath(std::string_view bytes, std::string_view name, const ReadO
     toolpath.warnings = warnings.take();
     nameObjects(program, toolpath);
     if (!(toolpath.footer_mm > 0)) toolpath.footer_mm = program.filament_mm.value_or(0);
+    makeTextUtf8(toolpath);
     return toolpath;
 }
 

@@ -34,8 +34,8 @@ public:
             return;
         }
         if (timing.size() <= segment.bead) {
-            // Beads without motion get the start time of the next one.
-            timing.resize(segment.bead + std::size_t{1}, {.start = piece.start});
+            extend(segment.bead, piece.start);
+            timing.push_back({.start = piece.start});
             timing.back().entry = static_cast<float>(piece.speed.entry);
         }
         gcode::BeadTiming& bead = timing[segment.bead];
@@ -46,6 +46,17 @@ public:
     void wait(double start, double seconds) override {
         if (also_ != nullptr) also_->wait(start, seconds);
         waiting += seconds;
+    }
+
+    /// Beads without motion are laid when the one before them is: a second carriage's copies (M605).
+    void extend(std::size_t beads, double start) {
+        gcode::BeadTiming timed{.start = start};
+        if (!timing.empty()) {
+            timed = timing.back();
+            timed.start += static_cast<double>(timed.seconds);
+            timed.seconds = 0;
+        }
+        timing.resize(beads, timed);
     }
 
     std::vector<gcode::BeadTiming> timing;
@@ -143,7 +154,7 @@ gcode::Toolpath readTimedToolpath(std::string_view bytes, std::string_view name,
     gcode::Toolpath toolpath = gcode::readToolpath(bytes, name, read);
     fit.finish();
     planner.finish();
-    recorder.timing.resize(toolpath.beads.size(), {.start = planner.seconds()});
+    recorder.extend(toolpath.beads.size(), planner.seconds());
     toolpath.timing = std::move(recorder.timing);
     times.total = planner.seconds();
     times.travel = recorder.travel;

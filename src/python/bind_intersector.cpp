@@ -3,6 +3,7 @@
 #include "python/conversion.h"
 #include "python/level_set_object.h"
 #include "python/named_tuple.h"
+#include "python/options/path.h"
 #include "python/options/signature.h"
 #include "python/point_loop.h"
 
@@ -80,6 +81,7 @@ Parts partsOf(const PrintFieldObject& print, const std::vector<std::string>& att
     Parts parts;
     for (const std::string& name : attributes) {
         const voxelize::Attribute attribute = ondemand::attributeNamed(name);
+        requireTimes(*print.field->layout().toolpath, {&attribute, 1});
         parts.annotation.attributes.push_back(ondemand::makePrintAttribute(print.field, attribute));
         parts.kinds.push_back(valueKind(attribute));
     }
@@ -122,21 +124,22 @@ Parts partsOf(const std::string& path, const std::string& grid, const std::vecto
 constexpr std::array<std::pair<std::string_view, march::BrickValues>, 2> kBrickValues = {
     {{"int16", march::BrickValues::Int16}, {"float", march::BrickValues::Float32}}};
 
-IntersectorObject makeIntersector(const py::object& source, const std::vector<std::string>& attributes,
-                                  const py::kwargs& given) {
+IntersectorObject makeIntersector(const py::object& source, const py::object& names, const py::kwargs& given) {
     Keywords keywords("Intersector", given);
     const bool smooth = keywords.flag("smooth_normals").value_or(false);
     const std::string grid = keywords.text("grid").value_or("");
     const march::BrickValues values = keywords.choice("brick_values", kBrickValues).value_or(march::BrickValues::Int16);
     keywords.finish();
+    const std::vector<std::string> attributes = textsOf("Intersector", "attributes", names);
     const bool is_print = py::isinstance<PrintFieldObject>(source);
     const bool is_grid = py::isinstance<LevelSetObject>(source);
     std::string path;
     if (!is_print && !is_grid) {
-        if (!py::isinstance<py::str>(source) && !py::hasattr(source, "__fspath__"))
+        if (!isPath(source))
             throw py::type_error("Intersector(): source: expected a PrintField, a LevelSet, or the path of a .vdb");
-        path = py::module_::import("os").attr("fspath")(source).cast<std::string>();
+        path = pathOf(source);
     }
+    if (!grid.empty() && (is_print || is_grid)) throw UsageError("Intersector(): grid: of the path of a .vdb alone");
     const auto* print = is_print ? &source.cast<const PrintFieldObject&>() : nullptr;
     const auto* level_set = is_grid ? &source.cast<const LevelSetObject&>() : nullptr;
     IntersectorObject result;
@@ -289,6 +292,7 @@ void bindPrintField(py::module_& module) {
             "attribute",
             [](const PrintFieldObject& self, const std::string& name, const py::object& points) {
                 const voxelize::Attribute attribute = ondemand::attributeNamed(name);
+                requireTimes(*self.field->layout().toolpath, {&attribute, 1});
                 return lookUp(*ondemand::makePrintAttribute(self.field, attribute), valueKind(attribute), points);
             },
             documented(
@@ -327,7 +331,7 @@ void bindIntersector(py::module_& module) {
             .c_str())
         .def(py::init(&makeIntersector),
              documented(fmt::format("__init__(self, {})", kParameters), "As the class says.").c_str(), "source"_a,
-             "attributes"_a = std::vector<std::string>())
+             "attributes"_a = py::tuple())
         .def("trace", &traceRays,
              documented(
                  "trace(self, origins, directions, *, t_min=0.0, t_max=1e999, progress=None)",

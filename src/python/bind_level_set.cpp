@@ -5,6 +5,7 @@
 #include "python/level_set_mesh.h"
 #include "python/level_set_object.h"
 #include "python/named_tuple.h"
+#include "python/options/path.h"
 #include "python/options/signature.h"
 #include "python/point_loop.h"
 
@@ -72,8 +73,11 @@ std::string fileParameters() {
     return parametersOf([](Keywords& options) { (void)fileOptionsOf(options); }) + ", overwrite=None";
 }
 
-std::string pathOf(const py::object& path) {
-    return py::module_::import("os").attr("fspath")(path).cast<std::string>();
+// The tools write other formats by other endings; this is the one here.
+std::string vdbPathOf(const py::object& path) {
+    std::string to = pathOf(path);
+    if (!to.ends_with(".vdb")) throw UsageError(fmt::format("{}: the name must end in .vdb", to));
+    return to;
 }
 
 // Two corners, in any order.
@@ -137,7 +141,7 @@ void writeVdb(const ToolpathObject& print, const py::object& path, const py::obj
     const exporter::FileOptions file = fileOptionsOf(keywords);
     const bool overwrite = keywords.flag("overwrite").value_or(false);
     keywords.finish();
-    const std::string to = pathOf(path);
+    const std::string to = vdbPathOf(path);
     const Replacement may(to, overwrite);
     runLong(progress, [&](const Report& report) {
         writePrint(print, exporter::LevelSetPlan(*print.toolpath, std::move(choices)), to, file, report);
@@ -162,7 +166,7 @@ void writeLevelSet(const LevelSetObject& self, const py::object& path, const py:
     const exporter::FileOptions file = fileOptionsOf(keywords);
     const bool overwrite = keywords.flag("overwrite").value_or(false);
     keywords.finish();
-    const std::string to = pathOf(path);
+    const std::string to = vdbPathOf(path);
     const Replacement may(to, overwrite);
     // The writer notes the precision in the grids: in copies that share the trees.
     openvdb::GridPtrVec grids;

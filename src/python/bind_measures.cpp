@@ -7,6 +7,7 @@
 #include "python/options/keywords.h"
 
 #include "assemble/print/read_print_options.h"
+#include "python/options/path.h"
 #include "python/options/signature.h"
 #include "python/toolpath_object.h"
 
@@ -61,6 +62,7 @@ py::object reportPrint(const ToolpathObject& print, const py::object& progress, 
     options.price = keywords.numberIn("price", 0, 1e9);
     exporter::LevelSetChoices choices = levelSetChoicesOf(keywords);
     keywords.finish();
+    if (keywords.find("unit")) throw UsageError("report(): unit: a report is in mm");
     choices.attributes.emplace();
     options.source = print.source;
     options.selection = voxelize::describeSelection(choices.print);
@@ -83,7 +85,7 @@ py::object comparePrint(const ToolpathObject& print, const py::object& model, co
     choices.interior = voxelize::Interior::cull;
     choices.attributes.emplace();
     keywords.finish();
-    const auto path = py::module_::import("os").attr("fspath")(model).cast<std::string>();
+    const auto path = pathOf(model);
     return dictOf(callLong(progress, [&](const Report& report) {
         const compare::ClosedModel closed(compare::readModel(path), path);
         const exporter::LevelSetPlan plan(*print.toolpath, std::move(choices));

@@ -2,6 +2,7 @@
 
 #include "python/arrays.h"
 #include "python/long_call.h"
+#include "python/options/path.h"
 #include "python/options/picture_options.h"
 #include "python/options/signature.h"
 #include "python/toolpath_object.h"
@@ -112,8 +113,8 @@ std::unique_ptr<PictureObject> render(const py::object& source, const py::object
         const auto& print = source.cast<const ToolpathObject&>();
         call.tracing.prints.toolpath = print.toolpath;
         path = print.source.empty() ? "print" : print.source;
-    } else if (py::isinstance<py::str>(source) || py::hasattr(source, "__fspath__")) {
-        path = py::module_::import("os").attr("fspath")(source).cast<std::string>();
+    } else if (isPath(source)) {
+        path = pathOf(source);
         if (assemble::isVdbFile(path)) {
             const std::string why = path + " is a level set, whose voxels are made; give the G-code, or leave them out";
             refuse(call.of_prints, why);
@@ -167,7 +168,7 @@ py::dict layersOf(const py::object& self) {
 }
 
 void writePicture(const PictureObject& self, const py::object& path, bool overwrite) {
-    const std::string to = py::module_::import("os").attr("fspath")(path).cast<std::string>();
+    const std::string to = pathOf(path);
     const Replacement may(to, overwrite);
     runLong(py::none(), [&](const Report&) {
         shade::PictureFile file(to);

@@ -3,6 +3,7 @@
 #include "python/long_call.h"
 #include "python/make_toolpath.h"
 #include "python/options/keywords.h"
+#include "python/options/path.h"
 #include "python/options/signature.h"
 #include "python/toolpath_object.h"
 #include "python/toolpath_state.h"
@@ -56,6 +57,8 @@ ToolpathObject readProgram(const py::object& source, const py::object& progress,
     voxelize::PrintOptions print;
     assemble::readReading(options, print);
     gcode::ReadOptions& read = print.read;
+    if (!timed && read.corner_rule != gcode::CornerRule::automatic)
+        throw UsageError("read(): planner: times are planned with timed=True alone; give both");
     options.finish();
     std::string bytes;
     std::string path;
@@ -64,8 +67,8 @@ ToolpathObject readProgram(const py::object& source, const py::object& progress,
         bytes = source.cast<std::string>();
     else if (in_memory)
         bytes = std::string(PyByteArray_AsString(source.ptr()), py::len(source));
-    else if (py::isinstance<py::str>(source) || py::hasattr(source, "__fspath__"))
-        path = py::module_::import("os").attr("fspath")(source).cast<std::string>();
+    else if (isPath(source))
+        path = pathOf(source);
     else
         throw py::type_error("read(): source: expected a path, or the bytes of a program");
     return callLong(progress, [&](const Report& report) {
@@ -92,13 +95,13 @@ void takeArrays(gcode::Toolpath& toolpath, const py::object& beads, const py::ob
     if (!beads.is_none()) toolpath.beads = recordsOf<gcode::Bead>(beads, "beads", "bead_dtype");
     if (!runs.is_none()) toolpath.runs = recordsOf<gcode::Run>(runs, "runs", "run_dtype");
     if (!arcs.is_none()) toolpath.arcs = recordsOf<gcode::Arc>(arcs, "arcs", "arc_dtype");
-    if (!objects.is_none()) toolpath.objects = objects.cast<std::vector<std::string>>();
+    if (!objects.is_none()) toolpath.objects = textsOf("make_toolpath", "objects", objects);
 }
 
-ToolpathObject finished(gcode::Toolpath&& toolpath) {
+ToolpathObject finished(gcode::Toolpath&& toolpath, const gcode::Toolpath* before = nullptr) {
     const py::gil_scoped_release release;
     requireValid(toolpath);
-    sumUp(toolpath);
+    sumUp(toolpath, before);
     return {std::make_shared<const gcode::Toolpath>(std::move(toolpath)), {}, nullptr, "", ""};
 }
 
@@ -124,7 +127,7 @@ ToolpathObject replaced(const ToolpathObject& self, const py::object& beads, con
     toolpath.timing.clear();
     toolpath.flow.clear();
     if (toolpath.beads.size() != count) toolpath.color_changes.clear();
-    return finished(std::move(toolpath));
+    return finished(std::move(toolpath), self.toolpath.get());
 }
 
 // A value for each bead.

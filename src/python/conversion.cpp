@@ -31,6 +31,14 @@ exporter::Provenance provenanceOf(const ToolpathObject& print, const exporter::L
 
 }  // namespace
 
+void requireTimes(const gcode::Toolpath& toolpath, std::span<const voxelize::Attribute> attributes) {
+    if (!toolpath.timing.empty()) return;
+    for (const voxelize::Attribute attribute : attributes)
+        if (voxelize::usesTiming(attribute))
+            throw UsageError(fmt::format("{}: the toolpath has no times; read it with timed=True",
+                                         voxelize::attributeName(attribute)));
+}
+
 exporter::LevelSetChoices levelSetChoicesOf(Keywords& keywords) {
     exporter::LevelSetChoices choices;
     assemble::readConversion(keywords, choices.print);
@@ -45,6 +53,7 @@ exporter::LevelSetChoices levelSetChoicesOf(Keywords& keywords) {
 }
 
 openvdb::GridPtrVec makeGrids(const ToolpathObject& print, const exporter::LevelSetPlan& plan, const Report& report) {
+    requireTimes(*print.toolpath, plan.attributes());
     voxelize::VoxelizeOptions options = plan.voxelizeOptions();
     options.progress = report;
     voxelize::Voxelizer voxelizer(*print.toolpath, plan.selection(), plan.lattice(), std::move(options));

@@ -11,11 +11,15 @@
 #include <openvdb/openvdb.h>
 
 #include <filesystem>
+#include <span>
 
 namespace stratum::python {
 
 /// assemble::readConversion() and interior, interior_distance, grids, unit, up, origin. Throws UsageError.
 exporter::LevelSetChoices levelSetChoicesOf(Keywords& options);
+
+/// Throws UsageError if one of them needs times and there are none.
+void requireTimes(const gcode::Toolpath& toolpath, std::span<const voxelize::Attribute> attributes);
 
 /// The level set first, then the attributes, with the metadata of gcode2vdb. Needs no GIL. Throws UsageError,
 /// InputError.

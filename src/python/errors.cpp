@@ -64,15 +64,22 @@ void bindErrors(py::module_& module) {
         "Input that can't be used: missing, empty, of another kind, out of range. The text says where and what to do.";
     usage.attr("__doc__") = "An option, an array, or a combination of them that makes no sense for this input.";
     output.attr("__doc__") = "An output that could not be written. An old file of that name is untouched.";
+    // Names of files and of objects may be no UTF-8.
+    static const auto raise = [](const py::handle& type, const char* what) {
+        const std::string text = inPython(what);
+        const auto told = py::reinterpret_steal<py::object>(
+            PyUnicode_DecodeUTF8(text.data(), static_cast<py::ssize_t>(text.size()), "replace"));
+        PyErr_SetObject(type.ptr(), told.ptr());
+    };
     py::register_exception_translator([](std::exception_ptr thrown) {
         try {
             if (thrown) std::rethrow_exception(std::move(thrown));
         } catch (const InputError& error) {
-            PyErr_SetString(input.ptr(), inPython(error.what()).c_str());
+            raise(input, error.what());
         } catch (const UsageError& error) {
-            PyErr_SetString(usage.ptr(), inPython(error.what()).c_str());
+            raise(usage, error.what());
         } catch (const OutputError& error) {
-            PyErr_SetString(output.ptr(), inPython(error.what()).c_str());
+            raise(output, error.what());
         }
     });
 }

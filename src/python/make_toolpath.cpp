@@ -11,6 +11,8 @@
 #include <cstdint>
 #include <limits>
 #include <numbers>
+#include <numeric>
+#include <vector>
 
 namespace stratum::python {
 
@@ -28,6 +30,9 @@ void requireRun(const gcode::Toolpath& toolpath, std::size_t n) {
     if (run.object >= toolpath.objects.size())
         throw UsageError(fmt::format("runs[{}]: object {}: there are {}; give their names as objects, [0] is \"\"", n,
                                      run.object, toolpath.objects.size()));
+    constexpr std::uint32_t kMostLayers = 1000000;
+    if (run.layer > kMostLayers)
+        throw UsageError(fmt::format("runs[{}]: layer {}: expected at most {}", n, run.layer, kMostLayers));
     if (static_cast<std::size_t>(run.feature) >= gcode::kFeatureCount)
         throw UsageError(fmt::format("runs[{}]: feature {}: expected an index into stratum.features, below {}", n,
                                      static_cast<int>(run.feature), gcode::kFeatureCount));
@@ -71,6 +76,13 @@ void requireBead(const gcode::Toolpath& toolpath, std::size_t n) {
             fmt::format("beads[{}]: its ends are {:g} and {:g} mm from the center of arcs[{}]; the same "
                         "radius was expected",
                         n, radius, other, bead.arc));
+    const double c = std::cos(arc.sweep), s = std::sin(arc.sweep);
+    const double x = bead.x0 - arc.center_x, y = bead.y0 - arc.center_y;
+    const double miss = std::hypot(arc.center_x + c * x - s * y - bead.x1, arc.center_y + s * x + c * y - bead.y1);
+    if (miss > 0.02 * std::max(radius, other) + 0.02)
+        throw UsageError(
+            fmt::format("beads[{}]: the sweep of arcs[{}], {:g} radians, ends {:g} mm beside the bead's end", n,
+                        bead.arc, arc.sweep, miss));
 }
 
 }  // namespace
@@ -88,12 +100,35 @@ void requireValid(const gcode::Toolpath& toolpath) {
     for (std::size_t n = 0; n < toolpath.beads.size(); ++n) requireBead(toolpath, n);
 }
 
-void sumUp(gcode::Toolpath& toolpath) {
+namespace {
+
+std::vector<double> volumesByTool(const gcode::Toolpath& toolpath) {
+    std::vector<double> volumes;
+    for (std::uint32_t n = 0; n < toolpath.beads.size(); ++n) {
+        const std::size_t tool = toolpath.runOf(toolpath.beads[n]).tool;
+        if (volumes.size() <= tool) volumes.resize(tool + 1);
+        volumes[tool] += gcode::laidVolume(toolpath, n);
+    }
+    return volumes;
+}
+
+}  // namespace
+
+void sumUp(gcode::Toolpath& toolpath, const gcode::Toolpath* before) {
     toolpath.layer_count = 0;
     for (const gcode::Run& run : toolpath.runs) toolpath.layer_count = std::max(toolpath.layer_count, run.layer);
     toolpath.extruded_mm3 = gcode::beadVolume(toolpath);
     const double area = 0.25 * std::numbers::pi * toolpath.filament_diameter * toolpath.filament_diameter;
-    toolpath.filament_mm = toolpath.extruded_mm3 / area;
+    const std::vector<double> volumes = volumesByTool(toolpath);
+    const std::vector<double> known = before != nullptr ? volumesByTool(*before) : std::vector<double>();
+    toolpath.filament_by_tool.assign(volumes.size(), 0.0);
+    for (std::size_t tool = 0; tool < volumes.size(); ++tool) {
+        // Each tool's filament may have a thickness of its own.
+        const bool scales = tool < known.size() && known[tool] > 0 && tool < before->filament_by_tool.size();
+        toolpath.filament_by_tool[tool] =
+            scales ? before->filament_by_tool[tool] * volumes[tool] / known[tool] : volumes[tool] / area;
+    }
+    toolpath.filament_mm = std::accumulate(toolpath.filament_by_tool.begin(), toolpath.filament_by_tool.end(), 0.0);
 }
 
 }  // namespace stratum::python

@@ -11,6 +11,7 @@ namespace stratum::python {
 void requireValid(const gcode::Toolpath& toolpath);
 
 /// Fills in what follows from the beads of a toolpath that no file states: layers, filament, volume.
-void sumUp(gcode::Toolpath& toolpath);
+/// @param before  what it was made from, whose tools may have filaments of several diameters; null: nothing
+void sumUp(gcode::Toolpath& toolpath, const gcode::Toolpath* before);
 
 }  // namespace stratum::python

@@ -2,12 +2,10 @@
 
 #include "python/options/signature.h"
 
-#include "base/error.h"
-
 #include <tbb/global_control.h>
 
-#include <fmt/format.h>
-
+#include <cstddef>
+#include <cstdint>
 #include <memory>
 
 namespace stratum::python {
@@ -29,12 +27,11 @@ void setThreads(const py::object& count) {
         limit().reset();
         return;
     }
-    const auto threads = count.cast<long>();
-    constexpr long kMost = 1 << 16;
-    if (threads < 1 || threads > kMost)
-        throw UsageError(
-            fmt::format("set_threads({}): expected a number from 1 on, or None for all processors", threads));
-    limit() = std::make_unique<Limit>(Limit::max_allowed_parallelism, static_cast<std::size_t>(threads));
+    constexpr std::int64_t kMost = 1 << 16;
+    py::kwargs given;
+    given["count"] = count;
+    const auto threads = Keywords("set_threads", given).integer("count", 1, kMost);  // None: all processors
+    limit() = std::make_unique<Limit>(Limit::max_allowed_parallelism, static_cast<std::size_t>(threads.value()));
 }
 
 }  // namespace

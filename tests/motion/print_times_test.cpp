@@ -40,6 +40,18 @@ Timed timedFile(const std::filesystem::path& path, gcode::CornerRule rule = gcod
     return result;
 }
 
+// The second carriage lays its copy while the first lays the bead.
+TEST(PrintTimes, CopiesAreLaidWithTheirBeads) {
+    const Timed print = timed("M83\nM605 S2 X100\nG1 Z.2 F600\nG1 X20 E1\nG4 S600\nG1 Y10 E1\n");
+    ASSERT_EQ(print.toolpath.timing.size(), 4U);
+    const auto& timing = print.toolpath.timing;
+    for (const std::size_t copy : {1U, 3U}) {
+        EXPECT_NEAR(timing[copy].start, timing[copy - 1].start + static_cast<double>(timing[copy - 1].seconds), 1e-6);
+        EXPECT_EQ(timing[copy].peak, timing[copy - 1].peak);
+        EXPECT_EQ(timing[copy].seconds, 0);
+    }
+}
+
 struct Stated {
     const char* file;
     double seconds;

@@ -331,6 +331,55 @@ class Pickles(unittest.TestCase):
 
 
 class Errors(unittest.TestCase):
+    def test_text_that_is_no_utf8(self):
+        """Latin-1 in names, comments and the file's own name."""
+        text = b"M83\n;LAYER_CHANGE\n;HEIGHT:0.2\n;TYPE:caf\xe9\nM486 S0\nM486 Ab\xe9\nG1 Z0.2 F600\nG1 X100 E5 F1200\n"
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(os.fsencode(folder), b"caf\xe9.gcode")
+            with open(path, "wb") as file:
+                file.write(text)
+            toolpath = stratum.read(os.fsdecode(path))
+        self.assertEqual(toolpath.objects, ["", "b\u00e9"])
+        self.assertIn("caf\u00e9", toolpath.warnings[0]["text"])
+        self.assertTrue(toolpath.summary())
+        with self.assertRaisesRegex(stratum.UsageError, "b\u00e9"):
+            toolpath.select(objects="zz")
+
+    def test_what_has_no_effect_or_makes_no_sense(self):
+        toolpath = stratum.read(gcode("tile.gcode"))
+        for refused, words in (
+                (lambda: stratum.write_vdb(toolpath, "part.stl", voxel_size=0.5), "must end in .vdb"),
+                (lambda: stratum.voxelize(toolpath, grids="time", voxel_size=0.5), "read it with timed=True"),
+                (lambda: stratum.render(toolpath, color_by="time", size=(16, 16)), "timed=True"),
+                (lambda: stratum.PrintField(toolpath, voxel_size=0.5).attribute("time", [[0, 0, 0]]), "timed=True"),
+                (lambda: stratum.read(gcode("tile.gcode"), planner="jerk"), "timed=True"),
+                (lambda: stratum.report(toolpath, unit="cm"), "a report is in mm"),
+                (lambda: stratum.Intersector(stratum.PrintField(toolpath, voxel_size=0.5), grid="x"), "of a .vdb alone")):
+            with self.assertRaisesRegex(stratum.UsageError, words):
+                refused()
+        for wrong in ({"objects": 5}, {"objects": [1, 2]}):
+            with self.assertRaisesRegex(TypeError, "objects: expected a text"):
+                toolpath.replace(**wrong)
+        runs = toolpath.runs.copy()
+        runs["layer"][0] = 100000000
+        with self.assertRaisesRegex(stratum.UsageError, r"runs\[0\]: layer 100000000"):
+            toolpath.replace(runs=runs)
+
+    def test_replaced_beads_have_their_filament(self):
+        two = stratum.read(b"M83\n;LAYER_CHANGE\n;HEIGHT:0.2\nG1 Z0.2 F600\nG1 X100 E5\nT1\nG1 X0 E2.5\n",
+                           filament_diameter=[1.75, 2.85])
+        self.assertAlmostEqual(two.replace(beads=two.beads).filament_mm, 7.5, 5)
+        first = two.replace(beads=two.beads[:1])
+        self.assertAlmostEqual(first.filament_mm, 5, 5)
+        self.assertAlmostEqual(stratum.report(first)["numbers"]["filament_length"]["value"], 5, 5)
+
+    def test_arcs_end_where_their_beads_end(self):
+        toolpath = stratum.read(b"M83\n;LAYER_CHANGE\n;HEIGHT:0.2\nG1 X10 Y0 Z0.2 F600\nG3 X0 Y10 I-10 J0 E1\n")
+        arcs = toolpath.arcs.copy()
+        arcs["sweep"] *= -1
+        with self.assertRaisesRegex(stratum.UsageError, "sweep of arcs"):
+            toolpath.replace(arcs=arcs)
+
     def test_input(self):
         for source, text in (("/nowhere/part.gcode", "/nowhere/part.gcode"), (b"", "empty|no G-code"), (b"\0" * 100, "")):
             with self.assertRaisesRegex(stratum.InputError, text):

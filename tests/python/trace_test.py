@@ -91,7 +91,7 @@ class Tracing(unittest.TestCase):
             self.assertEqual(stratum.threads(), count)
             again = self.intersectors["grid"].trace(self.origins, self.directions)
             np.testing.assert_array_equal(again.t, self.hits["print"].t)
-        with self.assertRaisesRegex(stratum.UsageError, "None for all"):
+        with self.assertRaisesRegex(stratum.UsageError, "expected a whole number from 1"):
             stratum.set_threads(0)
 
     def test_outlives_its_source(self):

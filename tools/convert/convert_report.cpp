@@ -31,7 +31,7 @@ void addReportOptions(CLI::App& app, ConvertReport& report) {
         ->needs(asked)
         ->group(group);
     app.add_option("--price", report.price, "Of a kg of filament (default: the file's)")
-        ->check(CLI::NonNegativeNumber)
+        ->check(CLI::Range(0.0, 1e9))
         ->type_name("PER_KG")
         ->needs(asked)
         ->group(group);

@@ -150,10 +150,15 @@ deposit::PrintRead readEither(const gcode::InputBytes& file, const gcode::ReadOp
 
 ReadProgram readProgram(const std::string& path, const PrintRequest& request, const ReadEvents& events,
                         Warnings& warnings, bool hash) {
-    if (request.toolpath) return {request.toolpath, 0, path, ""};
     const bool grows_by_time = request.growth && request.growth->by != voxelize::GrowthBy::volume;
     const bool timed =
         request.timed || request.series_by_time || grows_by_time || voxelize::needsTiming(request.printed);
+    if (request.toolpath && timed && request.toolpath->timing.empty())
+        throw UsageError(
+            fmt::format("{}: the toolpath has no times, which this picture needs; read it with them "
+                        "(timed=True)",
+                        path));
+    if (request.toolpath) return {request.toolpath, 0, path, ""};
     if (request.kept != nullptr)
         if (const ReadProgram* known = request.kept->program(path, timed, hash)) return *known;
     ReadProgram program;

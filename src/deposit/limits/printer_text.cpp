@@ -48,6 +48,8 @@ std::string readPrinterText(const std::string& path, const std::string& place) {
         refuseFile(
             path, place,
             fmt::format("has more than {} bytes, too many for a printer; is it the right file?", kLargestPrinterFile));
+    constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";  // of editors on Windows
+    if (text.starts_with(kByteOrderMark)) text.erase(0, kByteOrderMark.size());
     return text;
 }
 

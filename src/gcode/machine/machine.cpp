@@ -380,18 +380,18 @@ void Machine::setHomeOffset(const Command& command) {
 }
 
 void Machine::setVolumetric(const Command& command) {
-    if (command.hasValue('S') && !command.has('D')) volumetric_ = command.value('S') > 0;  // Marlin 2's switch
-    if (!command.hasValue('D')) {
-        if (volumetric_) volumetric_reason_ = fmt::format("M200 in line {}", line_);
-        return;
+    // D alone switches it on, or off by 0; S of Marlin 2 has the last word: M503 reports "M200 S0 D1.75" where it is
+    // off.
+    if (command.hasValue('D')) {
+        const double diameter = command.value('D') * unit_;
+        if (!(diameter >= 0 && diameter <= kMaxFilament))
+            refuse(fmt::format("M200 D{} is no filament diameter in mm", command.value('D')));
+        volumetric_ = diameter > 0;
+        const double tool = command.hasValue('T') ? command.value('T') : static_cast<double>(tool_);
+        if (diameter > 0 && tool >= 0 && tool < kNoTool) m200_diameters_[static_cast<std::size_t>(tool)] = diameter;
     }
-    const double diameter = command.value('D') * unit_;
-    if (!(diameter >= 0 && diameter <= kMaxFilament))
-        refuse(fmt::format("M200 D{} is no filament diameter in mm", command.value('D')));
-    volumetric_ = diameter > 0;
-    if (!volumetric_) return;
-    m200_diameter_ = diameter;
-    volumetric_reason_ = fmt::format("M200 in line {}", line_);
+    if (command.hasValue('S')) volumetric_ = command.value('S') > 0 && (volumetric_ || !command.hasValue('D'));
+    if (volumetric_) volumetric_reason_ = fmt::format("M200 in line {}", line_);
 }
 
 void Machine::mixFilaments(const Command& command) {
@@ -440,7 +440,8 @@ void Machine::labelObject(const Command& command) {
 }
 
 bool Machine::filamentKnown() const {
-    return volumetric_ || !filament_override_.empty() || m200_diameter_ || !settings_.filament_diameters.empty();
+    return volumetric_ || !filament_override_.empty() || !m200_diameters_.empty() ||
+           !settings_.filament_diameters.empty();
 }
 
 std::string Machine::extrusionRule() const {
@@ -449,14 +450,16 @@ std::string Machine::extrusionRule() const {
     return fmt::format("mm of filament of {:g} mm ({})", filamentDiameter(0),
                        !filament_override_.empty()             ? "as asked for"
                        : !settings_.filament_diameters.empty() ? "the file's settings"
-                       : m200_diameter_                        ? "an earlier M200"
+                       : !m200_diameters_.empty()              ? "an earlier M200"
                                                                : "assumed; the file doesn't say");
 }
 
 double Machine::filamentDiameter(std::size_t tool) const {
     const auto& list = filament_override_.empty() ? settings_.filament_diameters : filament_override_;
     if (!list.empty()) return list[std::min(tool, list.size() - 1)];
-    return m200_diameter_.value_or(1.75);
+    if (m200_diameters_.empty()) return 1.75;
+    const auto own = m200_diameters_.find(tool);
+    return own != m200_diameters_.end() ? own->second : m200_diameters_.begin()->second;
 }
 
 double Machine::filamentArea() const {

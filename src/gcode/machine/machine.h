@@ -142,6 +142,7 @@ private:
     void moveExtraAxes(const Command& command);
     void checkExtraAxes();
     double switchedExtrusion(double length);
+    void timeArc(const Arc& arc, const Point& target, int turns);
     void recordTravel(const Command& command, const Point& target, int motion, double drive);
     void recordPath(const Point& target, const std::optional<Arc>& arc, double drive, std::size_t beads_before);
 
@@ -171,7 +172,7 @@ private:
     WarningLog& warnings_;
     Firmware firmware_ = Firmware::marlin;
     std::vector<double> filament_override_;
-    std::optional<double> m200_diameter_;
+    std::map<std::size_t, double> m200_diameters_;  // mm, by tool
     std::string volumetric_reason_;
     double nominal_height_;
 
@@ -197,6 +198,7 @@ private:
     std::size_t tool_ = 0;
     Mixer mixer_;
     double feed_ = 0;
+    double move_seconds_ = 60;  // of a move under G93
     double speed_factor_ = 1;
     double speed_backup_ = 1;
     const double all_flow_;                 // ReadOptions::flow_percent as a factor

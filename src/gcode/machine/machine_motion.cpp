@@ -133,10 +133,12 @@ void Machine::move(const Command& command, int motion) {
     if (const Point* stored = restorePoint(command, motion)) target = targetFrom(*stored, command);
     if (command.hasValue('F') && command.value('F') > 0) {
         // Under G93, F is one over the minutes that the move takes.
-        feed_ = command.value('F') * (inverse_time_ ? distance(at, target) : unit_) / 60;
+        move_seconds_ = 60 / command.value('F');
+        feed_ = inverse_time_ ? distance(at, target) / move_seconds_ : command.value('F') * unit_ / 60;
         recorder_.setSpeed(feed_ * speed_factor_);
     }
     const double drive = takeExtrusion(command);
+    if (inverse_time_ && feed_ == 0 && motion < 2) feed_ = std::abs(drive) / move_seconds_;  // mm of filament a second
     const bool in_place = target.x == at.x && target.y == at.y && motion < 2;
     const double strut = in_place && drive > 0 && target.z > at.z ? freshOf(drive) : 0;
     double extrusion = drive != 0 ? extrudedOf(drive, in_place) : 0;
@@ -256,6 +258,7 @@ void Machine::runArc(const Command& command, const Point& target, bool clockwise
     if (!arc) return runPath(target, std::nullopt, extrusion);
     const int turns =
         command.hasValue('P') ? static_cast<int>(std::clamp(command.value('P'), 0.0, double{kMostTurns})) : 0;
+    timeArc(*arc, target, turns);
     if (plane_.normal() == 2)
         return turns > 0 ? runTurns(target, *arc, turns, extrusion) : runPath(target, arc, extrusion);
     const double sweep = arc->sweep + std::copysign(turns * kFullTurn, arc->sweep);
@@ -368,9 +371,21 @@ void Machine::recordPath(const Point& target, const std::optional<Arc>& arc, dou
     moves_->move(frame_.position(), target, arc, filament, filamentArea(), feed_ * speed_factor_, bead, line_);
 }
 
+// Under G93 the time is of the whole path.
+void Machine::timeArc(const Arc& arc, const Point& target, int turns) {
+    if (!inverse_time_) return;
+    const Point& at = frame_.position();
+    const double radius = norm(at[plane_.first] - arc.center_x, at[plane_.second] - arc.center_y);
+    const double plan = radius * (std::abs(arc.sweep) + turns * kFullTurn);
+    const std::size_t normal = plane_.normal();
+    feed_ = norm(plan, target[normal] - at[normal]) / move_seconds_;
+    recorder_.setSpeed(feed_ * speed_factor_);
+}
+
 void Machine::recordTravel(const Command& command, const Point& target, int motion, double drive) {
     std::optional<Arc> arc;
     if ((motion == 2 || motion == 3) && plane_.normal() == 2) arc = arcOf(command, target, motion == 2);
+    if (arc) timeArc(*arc, target, 0);
     if (arc && firmware_ == Firmware::klipper && !command.hasValue('R')) {
         const auto offset = [&](char letter) { return command.hasValue(letter) ? command.value(letter) * unit_ : 0; };
         arc->sweep = klipperSweep({frame_.position().x, frame_.position().y}, {target.x, target.y},

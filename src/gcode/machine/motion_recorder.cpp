@@ -80,6 +80,8 @@ bool MotionRecorder::take(Limit limit, std::string_view what, double value, std:
 }
 
 void MotionRecorder::byAxis(const Command& command, Limit first, double scale, std::uint32_t line) {
+    // Of another extruder than the first, whose limits alone are planned by; T of M205 is a speed.
+    if (command.code != 205 && command.hasValue('T') && command.value('T') != 0) return;
     for (std::size_t axis = 0; axis < kMotionAxes; ++axis)
         if (command.hasValue(kLetters[axis]))
             take(ofAxis(first, axis), fmt::format("M{} {}", command.code, kLetters[axis]),
@@ -121,7 +123,9 @@ void MotionRecorder::suggest(CornerRule rule) {
 void MotionRecorder::setCorners(const Command& command, std::uint32_t line) {
     byAxis(command, Limit::jerk, 1, line);
     // One X stands for the plane, as in legacy Marlin.
-    if (command.hasValue('X') && !command.hasValue('Y')) change(ofAxis(Limit::jerk, 1), limits_.jerk[0], line);
+    const bool refused = !(command.value('X') >= boundsOf(Limit::jerk).least);
+    if (command.hasValue('X') && !command.hasValue('Y') && !refused)
+        change(ofAxis(Limit::jerk, 1), limits_.jerk[0], line);
     if (command.hasValue('S')) take(Limit::least_printing_speed, "M205 S", command.value('S'), line);
     if (command.hasValue('T')) take(Limit::least_travel_speed, "M205 T", command.value('T'), line);
     if (!command.hasValue('J')) return;
@@ -206,6 +210,7 @@ void MotionRecorder::command(const Command& command, double unit, std::uint32_t 
             byAxis(command, Limit::steps_per_mm, 1 / unit, line);
             break;
         case 201:
+            if (command.subcode != 0) return;  // M201.1 of RepRapFirmware: of special moves alone
             byAxis(command, Limit::acceleration, unit, line);
             break;
         case 203:

@@ -55,7 +55,8 @@ public:
         if (flavor_ == "marlin") copy(Limit::printing, Limit::travel);
         settings_.most_printing = most_printing_;
         settings_.most_travel = flavor_ == "marlin" ? most_printing_ : most_travel_;
-        settings_.feedrate_per_minute = flavor_ == "reprap" || flavor_ == "reprapfirmware";
+        settings_.feedrate_per_minute =
+            reprap_ || rule == CornerRule::reprap_jerk || flavor_ == "reprap" || flavor_ == "reprapfirmware";
         settings_.rule_chosen = rule != CornerRule::automatic || printersRule() != CornerRule::automatic;
         limits.rule = rule != CornerRule::automatic ? rule : suggestedRule();
         if (swaps_heads_) {  // as PrusaSlicer's GCodeProcessor has it, whatever the filaments' settings

@@ -123,11 +123,17 @@ Tag ofColorChange(std::string_view text) {
 
 // REALvision; MakerWare's slicer Miracle-Grue, behind each move: "Infill", where Cura's ";BRIDGE" is none. Its first
 // version before several: "insets: 2", "inset path, length: 4".
+constexpr std::string_view kMoveInitials = "BCIORSios";
 Tag ofMoveComment(std::string_view text) {
     if (text.size() < 2 || text[1] < 'a' || text[1] > 'z') return {};
     if (const auto count = text.find(": "); count != std::string_view::npos)
         text = text.substr(0, std::min(count + 1, text.find(" path,")));
     const auto feature = featureOfMoveComment(text);
+    return feature ? Tag{.kind = Tag::Kind::feature, .feature = *feature, .text = text} : Tag{};
+}
+
+Tag ofBareName(std::string_view text) {
+    const auto feature = featureOfBareName(text);
     return feature ? Tag{.kind = Tag::Kind::feature, .feature = *feature, .text = text} : Tag{};
 }
 
@@ -138,6 +144,8 @@ Tag ofObject(std::string_view name) { return {.kind = Tag::Kind::object_start, .
 Tag parseTag(std::string_view comment) {
     std::string_view text = trim(comment);
     if (text.empty()) return {};
+    if (kMoveInitials.find(text.front()) != std::string_view::npos)
+        if (const Tag tag = ofMoveComment(text); tag.kind != Tag::Kind::none) return tag;
     switch (text.front()) {
         case 'T':
             if (take(text, "TYPE:")) return ofType(text);
@@ -150,7 +158,7 @@ Tag parseTag(std::string_view comment) {
             return ofPath(text);
         case 'B':
             if (take(text, "BEGIN_LAYER_")) return ofBegunLayer(text);
-            return ofMoveComment(text);
+            break;
         case 'P':  // ideaMaker
             if (take(text, "PRINTING:"))
                 return text == "NON-OBJECT" ? Tag{.kind = Tag::Kind::object_stop} : ofObject(text);
@@ -161,11 +169,7 @@ Tag parseTag(std::string_view comment) {
             if (text == "FLUSH_END") return {.kind = Tag::Kind::flush_stop};
             break;
         case 'f':  // Simplify3D from 4.1 on
-            if (take(text, "feature ")) {
-                if (const auto feature = featureOfBareName(text))
-                    return {.kind = Tag::Kind::feature, .feature = *feature, .text = text};
-                return {};
-            }
+            if (take(text, "feature ")) return ofBareName(text);
             break;
         case 'H':
             if (take(text, "HEIGHT:")) return ofHeight(text);
@@ -184,7 +188,7 @@ Tag parseTag(std::string_view comment) {
             if (take(text, "CHANGE_LAYER")) return layerChange("CHANGE_LAYER");
             if (text.starts_with("CP TOOLCHANGE WIPE")) return {.kind = Tag::Kind::filament_loaded};
             if (take(text, "COLOR_CHANGE")) return ofColorChange(text);
-            return ofMoveComment(text);
+            break;
         case 'M':
             if (take(text, "MESH:")) return text == "NONMESH" ? Tag{.kind = Tag::Kind::object_stop} : ofObject(text);
             break;
@@ -193,14 +197,6 @@ Tag parseTag(std::string_view comment) {
             break;
         case 'l':
             if (take(text, "layer ")) return ofNumberedLayer(text);
-            break;
-        case 'I':
-        case 'O':
-        case 'R':
-        case 'S':
-        case 'i':
-        case 'o':
-            if (const Tag tag = ofMoveComment(text); tag.kind != Tag::Kind::none) return tag;
             break;
         case 't':
             if (take(text, "tool ")) return ofToolShape(text);
@@ -211,7 +207,6 @@ Tag parseTag(std::string_view comment) {
         case 's':
             if (take(text, "start printing object, ")) return ofObject(text);
             if (take(text, "segType:")) return ofSegment(text);
-            if (text.starts_with("support path,")) return ofMoveComment(text);
             if (text.starts_with("set units to ")) return {.kind = Tag::Kind::units_set};
             if (take(text, "stop printing object")) return {.kind = Tag::Kind::object_stop};
             break;
@@ -219,10 +214,8 @@ Tag parseTag(std::string_view comment) {
             break;
     }
     constexpr std::size_t kLongestBareName = 26;
-    if (text.size() <= kLongestBareName && text.front() >= 'a' && text.front() <= 'z')
-        if (const auto feature = featureOfBareName(text))
-            return {.kind = Tag::Kind::feature, .feature = *feature, .text = text};
-    return {};
+    const bool may = text.size() <= kLongestBareName && text.front() >= 'a' && text.front() <= 'z';
+    return may ? ofBareName(text) : Tag{};
 }
 
 }  // namespace stratum::gcode

@@ -1,5 +1,7 @@
 #include "python/options/keywords.h"
 
+#include "python/options/path.h"
+
 #include "base/error.h"
 #include "base/names.h"
 
@@ -14,13 +16,6 @@ namespace stratum::python {
 namespace py = pybind11;
 
 namespace {
-
-bool isText(const py::handle& value) { return py::isinstance<py::str>(value) || py::hasattr(value, "__fspath__"); }
-
-std::string textOf(const py::handle& value) {
-    if (py::isinstance<py::str>(value)) return value.cast<std::string>();
-    return py::module_::import("os").attr("fspath")(value).cast<std::string>();
-}
 
 bool isNumber(const py::handle& value) {
     return PyNumber_Check(value.ptr()) != 0 && PyBool_Check(value.ptr()) == 0 && !py::isinstance<py::array>(value) &&
@@ -84,29 +79,35 @@ std::optional<bool> Keywords::flag(std::string_view name) {
 std::optional<std::string> Keywords::text(std::string_view name) {
     const std::optional<py::object> value = find(name);
     if (!value) return std::nullopt;
-    if (!isText(*value)) fail(name, "a text");
-    return textOf(*value);
+    if (!isPath(*value)) fail(name, "a text");
+    return pathOf(*value);
 }
 
 std::vector<double> Keywords::list(std::string_view name, char /*separator*/) {
     const std::optional<py::object> value = find(name);
     if (!value) return {};
     if (isNumber(*value)) return {finite(name, *value)};
-    if (!py::isinstance<py::sequence>(*value) || isText(*value)) fail(name, "a number or a list of them");
+    if (!py::isinstance<py::sequence>(*value) || isPath(*value)) fail(name, "a number or a list of them");
     std::vector<double> numbers;
     for (const py::handle& item : *value) numbers.push_back(finite(name, item));
     return numbers;
 }
 
+std::vector<std::string> textsOf(const std::string& function, const char* name, const py::object& value) {
+    py::kwargs given;
+    given[name] = value;
+    return Keywords(function, given).texts(name);
+}
+
 std::vector<std::string> Keywords::texts(std::string_view name) {
     const std::optional<py::object> value = find(name);
     if (!value) return {};
-    if (isText(*value)) return {textOf(*value)};
+    if (isPath(*value)) return {pathOf(*value)};
     if (!py::isinstance<py::sequence>(*value)) fail(name, "a text or a list of them");
     std::vector<std::string> texts;
     for (const py::handle& item : *value) {
-        if (!isText(item)) fail(name, "a text or a list of them");
-        texts.push_back(textOf(item));
+        if (!isPath(item)) fail(name, "a text or a list of them");
+        texts.push_back(pathOf(item));
     }
     return texts;
 }

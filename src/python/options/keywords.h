@@ -52,4 +52,7 @@ private:
     std::vector<std::string> known_, found_;
 };
 
+/// One text, or several, of a parameter that is no keyword of such; none for None.
+std::vector<std::string> textsOf(const std::string& function, const char* name, const pybind11::object& value);
+
 }  // namespace stratum::python

@@ -342,6 +342,25 @@ TEST(Machine, InverseTime) {
     const Toolpath toolpath = readProgram("M83\nG1 Z.2\nG93\nG1 X10 F6 E1\nG94\nG1 X0 F1200 E1\n");
     EXPECT_NEAR(static_cast<double>(toolpath.runOf(toolpath.beads[0]).speed), 1, 1e-6);  // 10 mm in a sixth of a minute
     EXPECT_NEAR(static_cast<double>(toolpath.runOf(toolpath.beads[1]).speed), 20, 1e-6);
+    // Of an arc the time is of its path, also where it ends at its start: 10 pi and 20 pi mm in 10 s.
+    const Toolpath arcs = readProgram("M83\nG1 X10 Y0 Z.2 F600\nG93\nG3 X-10 I-10 J0 E1 F6\nG3 I10 J0 E1 F6\n");
+    EXPECT_NEAR(static_cast<double>(arcs.runOf(arcs.beads[0]).speed), std::numbers::pi, 1e-6);
+    EXPECT_NEAR(static_cast<double>(arcs.runOf(arcs.beads[1]).speed), 2 * std::numbers::pi, 1e-6);
+}
+
+// Marlin's M503 reports "M200 S0 D1.75" where E is in mm. Each tool has a filament of its own.
+TEST(Machine, VolumetricIsWhatM200SSays) {
+    const auto volume = [](const std::string& m200) {
+        const Toolpath toolpath = readProgram(m200 + "\nM83\nG1 X0 Y0 Z.2\nG1 X20 E1\n");
+        return volumeOf(toolpath, toolpath.beads[0]);
+    };
+    EXPECT_NEAR(volume("M200 S0 D1.75"), kFilamentArea, 1e-5);
+    EXPECT_NEAR(volume("M200 S1 D1.75"), 1, 1e-6);
+    EXPECT_NEAR(volume("M200 D1.75"), 1, 1e-6);
+    EXPECT_NEAR(volume("M200 D1.75\nM200 D0"), kFilamentArea, 1e-5);
+    EXPECT_NEAR(volume("M200 S1 D0"), kFilamentArea, 1e-5);
+    const Toolpath two = readProgram("M200 T0 D1.75\nM200 T1 D2.85\nM83\nG1 X0 Y0 Z.2\nG1 X20 E2\nT1\nG1 X0 E2\n");
+    EXPECT_NEAR(two.filament_mm, 2 / kFilamentArea + 2 / (std::numbers::pi / 4 * 2.85 * 2.85), 1e-9);
 }
 
 }  // namespace

@@ -119,6 +119,21 @@ TEST(MotionRecorder, RefusesLimitsThatNoMachineHas) {
     for (const Move& move : log.moves) EXPECT_GE(move.speed, 0.01);
 }
 
+TEST(MotionRecorder, LimitsOfOthersAreLeftAlone) {
+    Log log;
+    record("M83\nM201 X900\nM201.1 X100\nM201 T1 E1\nM205 X8 Y4\nM205 X-1\nG1 X10 E1 F600\n", log);
+    EXPECT_EQ(log.last.acceleration[0], 900);
+    EXPECT_GT(log.last.acceleration[3], 1);
+    EXPECT_EQ(log.last.jerk[0], 8);
+    EXPECT_EQ(log.last.jerk[1], 4);
+    Log reprap;
+    ReadOptions options;
+    options.motion = &reprap;
+    options.firmware = Firmware::reprap;
+    (void)readProgram("M83\nM203 X600\nG1 X10 E1 F600\n", options);
+    EXPECT_NEAR(reprap.last.speed[0], 10, 1e-9);
+}
+
 TEST(MotionRecorder, FirmwareRetractsByWhatTheFileSays) {
     Log log;
     record("M83\nG1 X1 E1 F600\nG10\nG11\n", log);
