@@ -120,11 +120,9 @@ void addPictureOptions(CLI::App& app, TraceCommand& o) {
                    "Keeps what is finished in this file and goes on from there; the picture is the same")
         ->type_name("FILE")
         ->group(group);
-    completes(picture("--aov", "NAME,...",
-                      "More layers, for .exr: normal, depth, position, albedo, mask, variance, samples, layer, tool, "
-                      "feature"),
-              Completion::list,
-              {"normal", "depth", "position", "albedo", "mask", "variance", "samples", "layer", "tool", "feature"});
+    completes(
+        picture("--aov", "NAME,...", fmt::format("More layers, for .exr: {}", fmt::join(shade::aovNames(), ", "))),
+        Completion::list, shade::aovNames());
     picture.flag("--denoise,!--no-denoise",
                  "Takes noise out of the finished picture, guided by its geometry (the default of pictures of light, "
                  "but .exr)");
@@ -326,6 +324,8 @@ void readPictureOptions(TraceCommand& o, const CLI::App& app) {
     }
     CommandSource options(app);
     assemble::readPicture(options, o);
+    if (options.text("brdf") || options.text("color") || options.text("color_by"))
+        for (assemble::ObjectOptions& object : o.objects) object.material = {};
     readPrintOptions(options, o.tracing.prints.print, true);
     assemble::completeSamples(o);
     if (!o.objects.empty() && options.text("grid"))

@@ -19,6 +19,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <csignal>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
@@ -112,7 +113,7 @@ view::GivenInput givenInput(const ViewCommand& o, const std::string& path, const
     if (gcode::isStream(path))
         throw UsageError(fmt::format("{}: a stream can't be read anew when it has changed; name a file", path));
     view::GivenInput given;
-    given.path = path;
+    given.path = given.source = path;
     assemble::TracingOptions& tracing = given.options.tracing;
     if (isScene(path)) {
         assemble::SceneFile scene = assemble::readSceneFile(path);
@@ -123,13 +124,11 @@ view::GivenInput givenInput(const ViewCommand& o, const std::string& path, const
             given.objects.front().vdb = scene.print;
             given.objects.front().grid = scene.grid;
             given.objects.front().up = scene.file_up;
+            given.source = scene.print;
         }
         given.options = scene;
         given.options.render.seconds = 0.0;  // pictures by the clock differ from each other
         given.options.render.checkpoint.clear();
-        given.options.render.crop.reset();  // the page chooses the size
-        given.denoising = scene.denoising();
-        given.exposure = scene.exposure;
     } else {
         given.objects.emplace_back();
         given.objects.front().vdb = path;
@@ -138,6 +137,7 @@ view::GivenInput givenInput(const ViewCommand& o, const std::string& path, const
                                     [](const auto& object) { return !object.sdf && !assemble::isVdbFile(object.vdb); });
     if (prints) given.words = words;
     tracing.prints = o.prints;
+    if (!given.options.tool_colors.empty()) tracing.prints.print.read.filament_colors = given.options.tool_colors;
     if (o.brick_cache) tracing.brick_cache = *o.brick_cache;
     return given;
 }
@@ -191,6 +191,7 @@ void openBrowser(const std::string& page) {
     std::string program = "xdg-open";
     std::string address = page;
     char* const arguments[] = {program.data(), address.data(), nullptr};
+    std::signal(SIGCHLD, SIG_IGN);  // nobody waits for it
     posix_spawn_file_actions_t actions;
     posix_spawn_file_actions_init(&actions);
     posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);

@@ -3,6 +3,7 @@
 #include "assemble/file/object_file.h"
 #include "assemble/print/print_colors.h"
 #include "shade/palette/color_name.h"
+#include "shade/post/denoise.h"
 #include "voxelize/grid/voxel_choice.h"
 
 #include <fmt/format.h>
@@ -44,7 +45,10 @@ void readFilm(OptionSource& options, PictureRequest& request) {
     assign(request.legend, options.flag("legend"));
     assign(request.exposure, options.number("exposure"));
     shade::IntegratorOptions& integrator = render.integrator;
-    assign(integrator.name, options.text("integrator"));
+    if (const auto name = options.text("integrator")) {
+        integrator.name = *name;
+        if (!options.flag("denoise") && !shade::canDenoise(integrator)) request.denoise.reset();
+    }
     assign(integrator.bounces, options.integer("bounces", 1, kMost));
     assign(integrator.exact_translucency, options.flag("exact_translucency"));
     assign(integrator.ao_distance, options.number("ao_distance"));
@@ -55,13 +59,23 @@ void readFilm(OptionSource& options, PictureRequest& request) {
 
 void readCamera(OptionSource& options, PictureRequest& request) {
     shade::CameraOptions& camera = request.scene.camera;
-    assign(camera.view, options.choice("view", shade::kViews));
+    // What is given here takes the place of what says the same otherwise.
+    if (const auto view = options.choice("view", shade::kViews)) {
+        camera.view = *view;
+        camera.eye.reset();
+        camera.look_at.reset();
+        camera.up.reset();
+    }
     if (const auto eye = options.point("eye")) camera.eye = eye;
     if (const auto at = options.point("look_at")) camera.look_at = at;
     if (const auto up = options.point("up")) camera.up = up;
     assign(camera.fov, options.number("fov"));
-    assign(camera.f_number, options.number("f_number"));
-    assign(camera.aperture, options.number("aperture"));
+    const auto f_number = options.number("f_number");
+    const auto aperture = options.number("aperture");
+    if (f_number || aperture) {
+        camera.f_number = f_number.value_or(0);
+        camera.aperture = aperture.value_or(0);
+    }
     assign(camera.zoom, options.number("zoom"));
     if (const auto focus = options.numbersOf("focus", {1, 3}, "a distance or a point x, y, z"); !focus.empty()) {
         camera.focus_distance.reset();
@@ -96,7 +110,11 @@ void readMaterial(OptionSource& options, PictureRequest& request) {
 
 void readLight(OptionSource& options, PictureRequest& request) {
     shade::SceneOptions& scene = request.scene;
-    assign(scene.env, options.text("env"));
+    if (const auto env = options.text("env")) {
+        scene.env = *env;
+        if (scene.env_exposure != 0) request.exposure.reset();  // that of another map
+        scene.env_exposure = 0;
+    }
     assign(scene.env_rotation, options.number("env_rotation"));
     if (const auto stops = options.number("env_exposure")) {
         scene.env_exposure = *stops;

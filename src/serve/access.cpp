@@ -46,7 +46,11 @@ bool equalSecrets(std::string_view a, std::string_view b) {
 Access::Access(std::string token, const std::vector<std::string>& hosts, std::uint16_t port,
                const std::vector<std::string>& named)
     : token_(std::move(token)) {
-    for (const std::string& host : hosts) hosts_.push_back(fmt::format("{}:{}", host, port));
+    constexpr std::uint16_t kHttp = 80;  // which clients leave out
+    for (const std::string& host : hosts) {
+        hosts_.push_back(fmt::format("{}:{}", host, port));
+        if (port == kHttp) hosts_.push_back(host);
+    }
     for (const std::string& host : named) {
         named_.push_back(host);
         named_.push_back(fmt::format("{}:{}", host, port));

@@ -175,7 +175,7 @@ struct Server::Parts {
     asio::io_context context{1};
     asio::steady_timer pause{context};
     tcp::acceptor acceptor{context};
-    asio::signal_set signals{context, SIGINT, SIGTERM};
+    asio::signal_set signals{context, SIGINT, SIGTERM, SIGHUP};
     std::string url;
     bool accepting = false;
     std::vector<std::unique_ptr<asio::posix::stream_descriptor>> watched;

@@ -4,6 +4,7 @@
 #include "base/stopwatch.h"
 #include "shade/film/jpeg_writer.h"
 #include "shade/film/tonemap.h"
+#include "shade/integrator/deep_light.h"
 #include "shade/post/denoise.h"
 #include "view/beads/bead_look.h"
 #include "view/inspect.h"
@@ -123,6 +124,7 @@ void Viewport::take() {
     }
     current_ = std::move(*asked);
     still_.reset();
+    rough_cache_.reset();
     full_.reset();
     document_.update();
     plan_ = planPicture(document_.given(), current_.state);
@@ -148,6 +150,7 @@ void Viewport::step(const std::function<void()>& check) {
 
 void Viewport::stop() {
     still_.reset();
+    rough_cache_.reset();
     saving_.reset();
     full_.reset();
     const std::lock_guard lock(mutex_);
@@ -274,6 +277,8 @@ void Viewport::showRough(const std::function<void()>& check) {
     options.height = std::max(16, options.height / 2);
     options.spp = 4;
     options.noise = 0.0;
+    if (!rough_cache_) rough_cache_ = std::make_shared<shade::RadianceCacheWork>();
+    options.integrator.cache_work = rough_cache_;
     const ViewedPicture picture = scene_->picture(plan, options.width, options.height);
     const auto checked = [&check](std::uint64_t, std::uint64_t) { check(); };
     shade::RenderResult result = shade::render(*picture.print, picture.scene, options, checked);
@@ -287,8 +292,8 @@ void Viewport::workOnFinal(const std::function<void()>& check) {
     const shade::RenderOptions& options = plan_->options.render;
     if (!still_) {
         if (!full_) full_ = scene_->picture(*plan_, options.width, options.height);
-        still_ =
-            std::make_unique<StillPicture>(*full_, *plan_, fileNameOf(document_.given().path), scene_->sharedObjects());
+        still_ = std::make_unique<StillPicture>(*full_, *plan_, fileNameOf(document_.given().source),
+                                                scene_->sharedObjects());
     }
     if (!still_->done()) {
         still_->traceBand(check);
@@ -298,6 +303,7 @@ void Viewport::workOnFinal(const std::function<void()>& check) {
     still_->finish(check);
     send("final", "image/png", options.width, options.height, *full_, *plan_, current_.number, still_->png());
     still_.reset();
+    rough_cache_.reset();
     set(Stage::idle);
 }
 
@@ -314,7 +320,7 @@ void Viewport::workOnSave(const std::function<void()>& check) {
         const shade::RenderOptions& options = plan.options.render;
         scene_->makeObjects(plan, loadingEvents(output_.text));
         saving_ = std::make_unique<StillPicture>(scene_->picture(plan, options.width, options.height), plan,
-                                                 fileNameOf(document_.given().path), scene_->sharedObjects());
+                                                 fileNameOf(document_.given().source), scene_->sharedObjects());
         saving_number_ = save.number;
     }
     const shade::RenderOptions& options = saving_->plan().options.render;

@@ -92,7 +92,8 @@ private:
     ShowMessage current_;
     std::optional<PicturePlan> plan_;
     std::unique_ptr<StillPicture> still_, saving_;
-    std::uint64_t saving_number_ = 0;  // of the message that saving_ answers
+    std::shared_ptr<shade::RadianceCacheWork> rough_cache_;  // of the rough picture, if its light needs one
+    std::uint64_t saving_number_ = 0;                        // of the message that saving_ answers
     std::optional<ViewedPicture>
         full_;  // of the exact objects in the full size, for the finished picture and inspect()
     FrameScale frame_scale_;

@@ -6,6 +6,7 @@
 #include "shade/frame.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <glm/geometric.hpp>
 
 #include <algorithm>
@@ -50,18 +51,22 @@ bool geometric(Aov aov) { return aov != Aov::variance && aov != Aov::samples; }
 
 }  // namespace
 
+std::vector<std::string> aovNames() {
+    std::vector<std::string> names;
+    for (const Kind& kind : kinds()) names.emplace_back(kind.name);
+    return names;
+}
+
 std::vector<Aov> parseAovs(std::string_view text) {
     std::vector<Aov> aovs;
     for (const std::string_view word : splitList(text)) {
         const auto found =
             std::find_if(kinds().begin(), kinds().end(), [word](const Kind& k) { return k.name == word; });
         if (found == kinds().end()) {
-            std::vector<std::string_view> names;
-            for (const Kind& kind : kinds()) names.push_back(kind.name);
-            throw UsageError(
-                fmt::format("--aov {}: unknown layer; choose from normal, depth, position, albedo, shading, mask, "
-                            "variance, samples, layer, tool, feature{}",
-                            word, didYouMean(word, names)));
+            const std::vector<std::string> all = aovNames();
+            const std::vector<std::string_view> names(all.begin(), all.end());
+            throw UsageError(fmt::format("--aov {}: unknown layer; choose from {}{}", word, fmt::join(names, ", "),
+                                         didYouMean(word, names)));
         }
         if (std::find(aovs.begin(), aovs.end(), found->aov) == aovs.end()) aovs.push_back(found->aov);
     }

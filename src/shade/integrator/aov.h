@@ -33,6 +33,9 @@ enum class Aov {
     feature,  ///< V: see gcode2vdb --grids
 };
 
+/// All of them, as parseAovs() takes them.
+std::vector<std::string> aovNames();
+
 /// The layers of --aov: "normal,depth,...". Throws UsageError.
 std::vector<Aov> parseAovs(std::string_view text);
 

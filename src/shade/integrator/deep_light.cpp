@@ -1,21 +1,23 @@
 #include "shade/integrator/deep_light.h"
 
 #include "base/parallel_for.h"
+#include "base/stopwatch.h"
 #include "shade/camera/primary_rays.h"
 #include "shade/integrator/path.h"
 
 #include <tbb/enumerable_thread_specific.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <cstdint>
+#include <mutex>
 #include <vector>
 
 namespace stratum::shade {
 namespace {
 
 constexpr std::size_t kPaths = 1024;    // paths at a time: enough to fill vectors
-constexpr std::size_t kBatch = 16;      // streams between two calls of `check`; their vertices are kept
 constexpr std::size_t kMostRounds = 8;  // of camera rays for one stream, most of which may miss the print
 constexpr std::uint32_t kSeed = 0xdee9u;
 
@@ -86,27 +88,38 @@ std::shared_ptr<const RadianceCache> makeRadianceCache(const SceneDescription& s
                                                        const std::function<void()>& check) {
     const IntegratorOptions& kind = options.integrator;
     if (kind.exact_translucency || !followsPaths(kind) || !scene.anyTranslucent()) return {};
+    const auto begin = std::chrono::steady_clock::now();
     const std::size_t streams = streamsFor(options);
-    auto cache = std::make_shared<RadianceCache>(print.bounds(), cellsFor(static_cast<double>(streams * kPaths)));
-    const PathIntegrator integrator(scene, print, bouncesOf(kind), cache.get());
+    RadianceCacheWork own;
+    RadianceCacheWork& work = kind.cache_work ? *kind.cache_work : own;
+    if (!work.cache)
+        work.cache = std::make_shared<RadianceCache>(print.bounds(), cellsFor(static_cast<double>(streams * kPaths)));
+    const PathIntegrator integrator(scene, print, bouncesOf(kind), work.cache.get());
     const Surfaces surfaces(scene, print);
     tbb::enumerable_thread_specific<std::unique_ptr<trace::Tracer>> tracers([&print] { return print.makeTracer(); });
-    std::vector<std::vector<DeepVertex>> vertices(kBatch);
-    std::vector<std::size_t> followed(kBatch);
-    for (std::size_t first = 0; first < streams; first += kBatch) {
-        if (check) check();
-        const std::size_t count = std::min(kBatch, streams - first);
+    std::mutex checking;
+    while (work.streams < streams) {
+        // The picture needs the rest of its time.
+        if (options.seconds > 0.0 && work.streams > 0 && secondsSince(begin) > 0.5 * options.seconds) break;
+        const std::size_t count = std::min(RadianceCacheWork::kBatch, streams - work.streams);
         parallelFor(count, 1, [&](std::size_t from, std::size_t to) {
             DeepStream stream(scene, surfaces);
             for (std::size_t n = from; n != to; ++n) {
-                vertices[n].clear();
-                followed[n] = stream.follow(integrator, first + n, *tracers.local(), vertices[n]);
+                if (work.followed[n]) continue;
+                if (check) {
+                    const std::lock_guard lock(checking);
+                    check();
+                }
+                work.vertices[n].clear();
+                work.followed[n] = stream.follow(integrator, work.streams + n, *tracers.local(), work.vertices[n]);
             }
         });
         // One after the other, for the sums' bits.
-        for (std::size_t n = 0; n != count; ++n) cache->add(vertices[n], followed[n]);
+        for (std::size_t n = 0; n != count; ++n) work.cache->add(work.vertices[n], *work.followed[n]);
+        work.followed.fill(std::nullopt);
+        work.streams += count;
     }
-    return cache;
+    return work.cache;
 }
 
 }  // namespace stratum::shade

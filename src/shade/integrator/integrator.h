@@ -16,6 +16,7 @@
 namespace stratum::shade {
 
 class RadianceCache;
+struct RadianceCacheWork;
 
 /// Rays traced against the print. Rays that need no traversal (over the far bed) are not counted, except primary ones:
 /// there is one a sample.
@@ -49,6 +50,8 @@ struct IntegratorOptions {
     bool exact_translucency = false;
     /// Of makeRadianceCache(). Null: render() makes it where the picture needs one.
     std::shared_ptr<const RadianceCache> radiance_cache;
+    /// Keeps what is done of it if the render is put off, for the next one of the same picture. Null: nothing is kept.
+    std::shared_ptr<RadianceCacheWork> cache_work;
 
     /// Throws UsageError.
     void validate() const;

@@ -256,6 +256,7 @@ private:
     const SceneDescription& scene_;
     const RenderOptions& options_;
     const Progress& progress_;
+    const Clock::time_point begin_ = Clock::now();
     double cache_seconds_ = 0.0;
     const IntegratorOptions kind_;
     const std::unique_ptr<Integrator> integrator_;
@@ -350,8 +351,7 @@ void Renderer::tileByTile() {
 
 /// All tiles a little, and then the worst ones more, until the time is over.
 void Renderer::byTheClock() {
-    const auto begin = Clock::now();
-    const auto elapsed = [begin] { return std::chrono::duration<double>(Clock::now() - begin).count(); };
+    const auto elapsed = [begin = begin_] { return std::chrono::duration<double>(Clock::now() - begin).count(); };
     std::vector<Tile> tiles;
     tiles.reserve(boxes_.size());
     for (const PixelBox& box : boxes_) tiles.emplace_back(box, recorder_);

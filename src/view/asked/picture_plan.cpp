@@ -16,7 +16,8 @@ class Planner {
 public:
     Planner(const GivenInput& given, const ViewState& state) : given_(given), state_(state) {
         plan_.options = given.options;
-        plan_.exposure = given.exposure;
+        plan_.exposure = given.options.exposure;
+        plan_.legend = given.options.legend;
         plan_.words = {"vdbtrace", given.path};
         plan_.words.insert(plan_.words.end(), given.words.begin(), given.words.end());
     }
@@ -73,7 +74,9 @@ private:
         }
         if (state_.clip) {
             plan_.options.tracing.clip.push_back(*state_.clip);
-            say(fmt::format("--clip={},{}", vectorText(state_.clip->normal), state_.clip->offset).c_str());
+            // The option replaces the planes of a scene, so that all are said.
+            for (const trace::ClipPlane& plane : plan_.options.tracing.clip)
+                say(fmt::format("--clip={},{}", vectorText(plane.normal), plane.offset).c_str());
         }
     }
 
@@ -85,6 +88,7 @@ private:
         }
         if (!state_.color_by.empty()) {
             scene.color_by = state_.color_by;
+            plan_.own_materials = false;
             say("--color-by", state_.color_by);
         }
         if (state_.color_range) {
@@ -93,6 +97,7 @@ private:
         }
         if (!state_.material.empty()) {
             scene.brdf = state_.material;
+            plan_.own_materials = false;
             say("--brdf", state_.material);
         }
         if (state_.smooth) {
@@ -144,7 +149,6 @@ private:
             camera.eye = state_.eye;
             camera.look_at = state_.look_at;
             camera.up.reset();
-            camera.focus_point.reset();
             say(fmt::format("--eye={}", vectorText(*state_.eye)).c_str());
             say(fmt::format("--look-at={}", vectorText(state_.look_at)).c_str());
         }
@@ -164,7 +168,16 @@ private:
         render.width = state_.width;
         render.height = state_.height;
         say("--size", fmt::format("{}x{}", state_.width, state_.height));
-        assemble::Denoising denoising = given_.denoising;
+        if (render.crop) {  // of a scene; the page shows all of its picture
+            render.crop.reset();
+            say("--crop", fmt::format("0,0,{},{}", state_.width, state_.height));
+        }
+        if (!render.aovs.empty()) {
+            render.aovs.clear();
+            say("--aov");
+            plan_.words.emplace_back();  // none
+        }
+        assemble::Denoising denoising = given_.options.denoising();
         if (state_.spp > 0) {
             render.spp = state_.spp;
             denoising.spp_given = true;

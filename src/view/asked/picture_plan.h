@@ -4,6 +4,7 @@
 
 #include "assemble/file/object_file.h"
 #include "assemble/finished_picture.h"
+#include "assemble/picture_request.h"
 #include "assemble/ready_scene.h"
 #include "view/asked/view_state.h"
 
@@ -18,10 +19,9 @@ namespace stratum::view {
 struct GivenInput {
     std::string path;                              ///< as given
     std::vector<assemble::ObjectOptions> objects;  ///< none: its scene file could not be read
-    assemble::PictureOptions options;              ///< without events
-    assemble::Denoising denoising;
-    std::optional<double> exposure;  ///< stops, if the scene file says so
-    std::vector<std::string> words;  ///< options on the command line, as vdbtrace takes them
+    assemble::PictureRequest options;              ///< without events
+    std::string source;                            ///< the file that vdbtrace states in its pictures
+    std::vector<std::string> words;                ///< options on the command line, as vdbtrace takes them
     /// Reads its scene file anew. Throws InputError. Empty: it stays as it is.
     std::function<GivenInput()> again;
 };
@@ -30,6 +30,8 @@ struct GivenInput {
 struct PicturePlan {
     assemble::PictureOptions options;  ///< with samples and denoiser's layers, as vdbtrace chooses them
     bool denoise = false;
+    bool legend = false;
+    bool own_materials = true;       ///< objects have those of their scene
     std::optional<double> exposure;  ///< empty: found from the light
     std::vector<std::string> words;  ///< the command line of vdbtrace, without -o
     std::string objects_key;         ///< equal if the objects in front of the camera are

@@ -162,12 +162,19 @@ Json Document::find(const FindMessage& find) {
         if (found.count == 0) return json;
         line = found.line;
     }
-    for (std::uint32_t n = 0; n < print->beads.size(); ++n) {
+    // Before its first layer nothing of the print is there; the picture then shows where it begins.
+    const auto first = std::find_if(print->beads.begin(), print->beads.end(),
+                                    [&](const gcode::Bead& each) { return print->runOf(each).layer > 0; });
+    if (first != print->beads.end()) bead = static_cast<std::uint32_t>(first - print->beads.begin());
+    for (std::uint32_t n = bead; n < print->beads.size(); ++n) {
         const bool before = find.seconds ? static_cast<double>(print->timing[n].start) <= *find.seconds
                                          : print->lineOf(print->beads[n]) <= line;
         if (before) bead = n;
     }
-    if (find.seconds) line = print->lineOf(print->beads[bead]);
+    if (find.seconds && static_cast<double>(print->timing[bead].start) <= *find.seconds)
+        line = print->lineOf(print->beads[bead]);
+    else if (find.seconds)
+        line = print->lineOf(print->beads.front());
     json["lines"] = linesAround(0, line);
     if (json["lines"].empty() || json["lines"].back()["number"] < line)
         throw InputError(fmt::format("the program has no line {}", line));

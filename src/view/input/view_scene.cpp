@@ -87,7 +87,10 @@ void ViewScene::makeObjects(const PicturePlan& plan, const assemble::ReadEvents&
         objects_ = whole_;
     }
     auto made = std::make_shared<Objects>();
-    made->traced = assemble::readTracedObjects(document_.given().objects, tracing);
+    std::vector<assemble::ObjectOptions> objects = document_.given().objects;
+    if (!plan.own_materials)
+        for (assemble::ObjectOptions& object : objects) object.material = {};
+    made->traced = assemble::readTracedObjects(objects, tracing);
     made->key = plan.objects_key;
     made->generation = document_.generation();
     objects_ = std::move(made);

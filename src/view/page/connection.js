@@ -36,18 +36,21 @@ export class Connection extends EventTarget {
     const socket = new WebSocket(this.url);
     socket.binaryType = "arraybuffer";
     this.#socket = socket;
+    let opened = false;
     socket.addEventListener("open", () => {
+      opened = true;
       this.#wait = 250;
       this.#tell("open");
     });
     socket.addEventListener("message", (event) => this.#take(event.data));
-    socket.addEventListener("close", async () => {
+    socket.addEventListener("close", async (event) => {
       if (this.#closed) return;
-      this.#tell("gone");
+      this.#tell("gone", { reason: event.reason });
       // A server that was started anew has another token, and never lets this page in.
       const answer = await fetch(location.pathname, { method: "HEAD" }).catch(() => null);
       if (this.#closed) return;
       if (answer?.status === 403) return this.#tell("stranger");
+      if (answer?.ok && !opened) this.#tell("gone", { reason: "too many pages are open; close one of them" });
       clearTimeout(this.#timer);
       this.#timer = setTimeout(() => this.#open(), this.#wait);
       this.#wait = Math.min(5000, this.#wait * 2);

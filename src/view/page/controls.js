@@ -32,6 +32,9 @@ export class Controls {
     setOptions(byId("material"), [["as the file says", ""], ["a colour", "#"], ...facts.materials.map((name) => [name, name])]);
     if (print) {
       for (const id of ["layer-low", "layer-high", "layer-from", "layer-to"]) byId(id).max = print.layers;
+      // The file may have been written anew, with fewer.
+      const [low, high] = this.page.state.layers;
+      if (Math.max(low, high) > print.layers) this.page.change({ layers: low > print.layers ? [0, 0] : [low, 0] });
       this.#checks("features", print.features.map((f) => [f.name, f.name.replaceAll("-", " ")]), (on, off) => ({ hidden_features: off }));
       this.#checks("objects", print.objects.map((o) => [o.number, o.name]), (on, off) => ({ objects: off.length ? on : [] }));
       this.#checks("tools", print.tools.map((t) => [t, `T${t}`]), (on, off) => ({ tools: off.length ? on : [] }));

@@ -81,6 +81,7 @@ function pixels() {
   return [side(picture.clientWidth), side(picture.clientHeight)];
 }
 
+let sentLast = 0;
 /** Shows the state; of many calls before the next frame, the last one counts. */
 function ask(moving) {
   if (asked === null) requestAnimationFrame(sendAsked);
@@ -89,6 +90,9 @@ function ask(moving) {
 
 function sendAsked() {
   const { moving } = asked;
+  // Displays may be faster than the server lets a page ask.
+  if (moving && performance.now() - sentLast < 7) return requestAnimationFrame(sendAsked);
+  sentLast = performance.now();
   asked = null;
   if (orbit) state.camera = orbit.toJSON();
   shownSize = pixels();
@@ -213,9 +217,10 @@ on("open", () => {
   if (byId("trouble").dataset.of === "connection") byId("trouble").hidden = true;
   document.body.dataset.connection = "open";
 });
-on("gone", () => {
+on("gone", ({ reason }) => {
   document.body.dataset.connection = "gone";
-  trouble("The server does not answer. It may have ended: start vdbview again. Trying to reconnect …", "connection");
+  const why = reason ? `The server has closed the connection: ${reason}.` : "The server does not answer. It may have ended: start vdbview again.";
+  trouble(`${why} Trying to reconnect …`, "connection");
 });
 on("stranger", () => trouble("The server was started anew, and its page has another address: open the one that it prints.", "connection"));
 on("hello", (detail) => {
@@ -309,7 +314,14 @@ on("failed", (detail) => {
   document.body.classList.add("stale"); // what is on the screen is not what was asked for
   byId("command").textContent = "";
 });
-on("refused", ({ text }) => trouble(text, "view"));
+on("refused", ({ text }) => {
+  // A link of another version may ask for what this one does not know: the input itself is shown then.
+  if (latest === 0 && toFragment(state, file) !== toFragment(initial(), file)) {
+    setState(initial());
+    ask(false);
+  }
+  trouble(text, "view");
+});
 on("inspected", (detail) => {
   window.vdbviewFound = detail;
   if (turns) turnAbout(detail);

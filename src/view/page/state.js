@@ -2,7 +2,7 @@
 
 /** The view of an input as it was given. */
 export const initial = () => ({
-  camera: { view: "iso", fov: 28 },
+  camera: { view: "", fov: 28 }, // as the input says
   layers: [0, 0],
   printed: 100,
   beads: null,
@@ -82,7 +82,7 @@ export function fromFragment(fragment) {
   if (changed === null || typeof changed !== "object") changed = {};
   for (const [key, value] of Object.entries(changed))
     if (key === "file" && Number.isInteger(value) && value >= 0) file = value;
-    else if (key in state && fits(key, value, state[key])) state[key] = value;
+    else if (Object.hasOwn(state, key) && fits(key, value, state[key])) state[key] = value;
     else wrong.push(key.slice(0, 40));
   return { state, file, wrong: wrong.length ? `What the address says of the view is left out: ${wrong.slice(0, 5).join(", ")}.` : "" };
 }

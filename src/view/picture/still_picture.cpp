@@ -1,5 +1,7 @@
 #include "view/picture/still_picture.h"
 
+#include "shade/integrator/deep_light.h"
+
 #include "shade/film/png.h"
 #include "shade/film/tonemap.h"
 #include "shade/integrator/render.h"
@@ -50,11 +52,15 @@ void StillPicture::traceBand(const std::function<void()>& check) {
     options.crop = shade::PixelBox{0, next_row_, options.width, end};
     options.margin = 0;
     options.integrator.radiance_cache = whole_.radiance_cache;
+    if (!cache_work_) cache_work_ = std::make_shared<shade::RadianceCacheWork>();
+    options.integrator.cache_work = cache_work_;
     const shade::RenderResult band =
         shade::render(*picture_.print, picture_.scene, options, [&check](std::uint64_t, std::uint64_t) { check(); });
-    if (next_row_ == 0)
+    if (next_row_ == 0) {
         whole_.film =
             shade::Film(options.width, options.height, {0, 0, options.width, options.height}, band.film.content());
+        if (band.film.transparent()) whole_.film.makeTransparent(band.film.bareBed());
+    }
     copyBand(band.film, whole_.film);
     whole_.radiance_cache = band.radiance_cache;
     whole_.rays += band.rays;
@@ -75,14 +81,14 @@ void StillPicture::finish(const std::function<void()>& check) {
     }
 }
 
-std::vector<std::uint8_t> StillPicture::rgb() const { return shade::toDisplay(whole_.film, picture_.tone); }
-
 std::vector<std::uint8_t> StillPicture::png() const {
     const shade::RenderOptions& render = plan_.options.render;
     shade::Metadata metadata = assemble::metadataOf(source_, render, plan_.options.scene.env, *objects_, picture_.scene,
                                                     whole_, plan_.denoise);
     if (whole_.film.content() == shade::FilmContent::radiance) metadata.insert(assemble::exposureFact(picture_.tone));
-    return shade::encodePng(render.width, render.height, rgb(), metadata);
+    const shade::Legend* legend = plan_.legend && !objects_->legends.empty() ? &objects_->legends.front() : nullptr;
+    return shade::encodePng(render.width, render.height, shade::displayPixels(whole_.film, picture_.tone, legend),
+                            metadata);
 }
 
 }  // namespace stratum::view

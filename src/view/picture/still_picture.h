@@ -29,7 +29,6 @@ public:
 
     /// Denoises if the plan says so. Throws what `check` throws, and then can be called again.
     void finish(const std::function<void()>& check);
-    std::vector<std::uint8_t> rgb() const;
     /// After finish(). As vdbtrace writes it.
     std::vector<std::uint8_t> png() const;
     const ViewedPicture& picture() const { return picture_; }
@@ -41,6 +40,7 @@ private:
     std::string source_;
     std::shared_ptr<const assemble::TracedObjects> objects_;
     shade::RenderResult whole_;
+    std::shared_ptr<shade::RadianceCacheWork> cache_work_;
     int next_row_ = 0;
 };
 
