@@ -24,6 +24,7 @@ class Socket:
         while self.stream.readline() not in (b"\r\n", b""):
             pass
         self.pictures = 0
+        self.finals = {}  # by number: what is said of a finished picture, and its file
         threading.Thread(target=self.read, daemon=True).start()
 
     def send(self, message):
@@ -40,12 +41,29 @@ class Socket:
                     size = struct.unpack("!H", self.stream.read(2))[0]
                 elif size == 127:
                     size = struct.unpack("!Q", self.stream.read(8))[0]
-                self.stream.read(size)
-                if first & 15 == 2:
+                if first & 15 != 0:  # not the next piece of a message
+                    kind, data = first & 15, b""
+                data += self.stream.read(size)
+                if first & 0x80 and kind == 2:
                     self.pictures += 1
+                    self.keep(data)
                     self.send({"type": "shown"})
         except (OSError, ValueError):
             pass
+
+    def keep(self, data):
+        length = struct.unpack("<I", data[:4])[0]
+        head = json.loads(data[4:4 + length])
+        if head.get("kind") == "final":
+            self.finals[head["number"]] = head, data[4 + length:]
+
+    def final(self, number, state, seconds=60):
+        """Asks for a picture, and waits until it is finished."""
+        self.send({"type": "show", "number": number, "moving": False, "own": False, "state": state})
+        until = time.monotonic() + seconds
+        while number not in self.finals and time.monotonic() < until:
+            time.sleep(0.02)
+        return self.finals.get(number, (None, b""))
 
 
 def resident(process):

@@ -35,6 +35,15 @@ TEST(Access, OnlyBelowTheToken) {
     }
 }
 
+// Browsers leave the default port out (RFC 9110, 4.2.1 and 7.2).
+TEST(Access, ThePortOfHttpMayBeLeftOut) {
+    const Access access("0123", {"127.0.0.1"}, 80);
+    EXPECT_TRUE(access.knownHost("127.0.0.1"));
+    EXPECT_TRUE(access.knownHost("127.0.0.1:80"));
+    EXPECT_TRUE(access.ownOrigin("http://127.0.0.1", "127.0.0.1"));
+    EXPECT_FALSE(access.knownHost("example.org"));
+}
+
 TEST(Access, OnlyTheOwnHostsAndPages) {
     const Access access("0123", {"127.0.0.1", "localhost", "[::1]"}, 8080);
     EXPECT_TRUE(access.knownHost("LOCALHOST:8080"));

@@ -8,6 +8,7 @@
 
 #include <array>
 #include <cmath>
+#include <memory>
 #include <stdexcept>
 
 namespace stratum {
@@ -148,6 +149,29 @@ TEST(DeepLight, EndsWhereItIsToldTo) {
     const auto scene = test::plainScene(kShells, "natural-pla", "sky", true);
     EXPECT_THROW(shade::makeRadianceCache(scene, kShells, smallOptions(64), [] { throw std::runtime_error("enough"); }),
                  std::runtime_error);
+}
+
+// A page that moves puts the work off: what is done stays, and the picture is the same in the end.
+TEST(DeepLight, GoesOnWhereItWasPutOff) {
+    const auto scene = test::plainScene(kShells, "natural-pla", "sky", true);
+    RenderOptions options = smallOptions(64);
+    const shade::Film whole = shade::render(kShells, scene, options).film;
+    options.integrator.cache_work = std::make_shared<shade::RadianceCacheWork>();
+    int stops = 0;
+    for (bool done = false; !done;) {
+        int calls = 0;
+        try {
+            (void)shade::makeRadianceCache(scene, kShells, options, [&calls] {
+                if (++calls > 2) throw std::runtime_error("another page moves");
+            });
+            done = true;
+        } catch (const std::runtime_error&) {
+            ASSERT_LT(++stops, 100);
+        }
+    }
+    EXPECT_GT(stops, 0);
+    const shade::Film again = shade::render(kShells, scene, options).film;
+    for (std::size_t n = 0; n < whole.pixels().size(); ++n) EXPECT_EQ(whole.pixels()[n].rgb, again.pixels()[n].rgb);
 }
 
 // A camera that sees no print at all must not look for it for ever.
