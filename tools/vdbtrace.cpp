@@ -3,6 +3,7 @@
 #include "command_line.h"
 #include "command_source.h"
 #include "output_names.h"
+#include "print_options.h"
 #include "run_files.h"
 #include "shade/environment/environment.h"
 #include "shade/finish/named_brdf.h"

@@ -250,8 +250,6 @@ private:
                 generator = generator.substr(0, generator.rfind(' ', date));
             if (generator.ends_with('.')) generator.remove_suffix(1);
             name(generator);
-        } else if (text.starts_with("Miracle-Grue ")) {
-            name(text);
         } else if (text.starts_with("Basic settings: Layer height:")) {
             name("Cura 15 or before");
             if (const auto height = positiveNumber(text.substr(text.rfind("height:") + 7), 100))
@@ -267,7 +265,7 @@ private:
             name(upTo(text, " - "));
         } else if (takePrefix(text, "Sliced by ")) {
             name(upTo(text, ","));
-        } else if (takePrefix(text, "Generated with: ") ||  // REALvision
+        } else if (text.starts_with("Miracle-Grue ") || takePrefix(text, "Generated with: ") ||  // REALvision
                    takePrefix(text, "GENERATOR.NAME:")) {
             name(text);
         } else if (takePrefix(text, "GENERATOR.VERSION:")) {
