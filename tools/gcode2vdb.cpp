@@ -219,6 +219,8 @@ void check(const tools::ConvertCommand& o, const std::vector<fs::path>& outputs)
         throw UsageError(fmt::format("-o {}: NanoVDB can't be a stream; name a file", output.string()));
     if (nano && o.usda) throw UsageError(fmt::format("--usda: names the .vdb of volumes, not {}", output.string()));
     if (mesh && o.usda) throw UsageError(fmt::format("--usda: is for volumes; write a .vdb, not {}", output.string()));
+    if (o.compare.grid && (mesh || !o.writesGrid()))
+        throw UsageError("--grids deviation: is a grid beside the surface; write a .vdb or .nvdb");
     if (mesh) tools::checkMeshGrids(o, output);
     if (standard && (o.usda || !o.snapshots.empty()))
         throw UsageError(fmt::format("{}: writes files beside the output; name one, -o {} is a stream",

@@ -164,8 +164,9 @@ std::vector<std::string> doubtsOf(const PrintedSurface& print, const ClosedModel
                                   const CompareOptions& options) {
     std::vector<std::string> doubts;
     if (2 * model.repeated() >= model.mesh().triangles.size())
-        doubts.push_back(fmt::format("{} of its {} triangles are there twice, as of bodies in one place; remove one",
-                                     model.repeated(), model.mesh().triangles.size() - model.repeated()));
+        doubts.push_back(
+            fmt::format("{} of its {} triangles repeat others, as of bodies in one place; leave one of them",
+                        model.repeated(), model.mesh().triangles.size()));
     const double ratio = found.model_mm3 / found.print_mm3;
     if (found.print_mm3 > 0 && (ratio > kOrder || ratio < 1 / kOrder))
         doubts.push_back(

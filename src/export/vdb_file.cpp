@@ -141,6 +141,8 @@ std::string beadModel(const gcode::DepositModel& deposit) {
 
 void describe(openvdb::FloatGrid& grid, const voxelize::Lattice& lattice, const Provenance& provenance) {
     const auto text = [&grid](const char* name, const std::string& value) {
+        // A series describes one grid for each of its files.
+        grid.removeMeta(name);
         if (!value.empty()) grid.insertMeta(name, openvdb::StringMetadata(value));
     };
     const auto number = [&grid](const char* name, double value) {

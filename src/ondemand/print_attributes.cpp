@@ -5,6 +5,7 @@
 #include "voxelize/grid/deposit_balance.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -124,10 +125,8 @@ voxelize::Attribute attributeNamed(std::string_view name) {
     } catch (const UsageError&) {
         // said below, for what was asked here
     }
-    throw UsageError(
-        fmt::format("{}: prints have no such attribute; choose layer, time, feature, tool, object, width, speed, flow, "
-                    "overfill or color",
-                    name));
+    throw UsageError(fmt::format("{}: prints have no such attribute; choose one of {}", name,
+                                 fmt::join(voxelize::attributeNames(), ", ")));
 }
 
 std::shared_ptr<const march::AttributeSource> makePrintAttribute(std::shared_ptr<const PrintField> field,

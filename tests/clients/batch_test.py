@@ -132,6 +132,20 @@ with open(path("part.vdb"), "rb") as file:
     done = subprocess.run([VDBTRACE, "-", "-o", "s.png"], stdin=file, capture_output=True, text=True, cwd=FOLDER)
 check(done.returncode == 3 and "can't be read from a stream" in done.stderr, f"a .vdb from a stream: {done.stderr.strip()}")
 
+# --- one output of a run is no other one, also after it was written ---------------------------------------------------------------
+for name in ("one.gcode", "one_050pct.gcode"):
+    shutil.copy(gcode("tile.gcode"), path(name))
+for inputs in (["one_050pct.gcode", "one.gcode"], ["one.gcode", "one_050pct.gcode"]):
+    shutil.rmtree(path("both"), ignore_errors=True)
+    done = call(GCODE2VDB, *inputs, *COARSE, "-o", "both/", "--snapshots", "50%")
+    check(done.returncode == 2 and "is written already" in done.stderr, f"{inputs}: {done.returncode} {done.stderr.strip()}")
+# --- a series of what is selected grows from its first picture on ------------------------------------------------------------------
+does(VDBTRACE, "part.gcode", "-o", "grow.png", *SMALL, "--progress-series", "4", "--layers", "20:24", "--no-bed", "--integrator", "layer")
+pictures = {open(path(name), "rb").read() for name in names("grow_*.png")}
+check(len(pictures) == 4, f"{len(pictures)} different pictures of 4")
+done = call(VDBTRACE, "part.gcode", "-o", "none.png", *SMALL, "--printed", "time:0.0001")
+check(done.returncode == 2 and "nothing of what is selected is printed by then" in done.stderr, done.stderr.strip())
+
 # --- a full disk behind standard output ------------------------------------------------------------------------------------------
 for command in ([GCODE2VDB, "part.gcode", *COARSE, "-o", "full.vdb", "--stats", "-"], [VDBTRACE, "part.vdb", *SMALL, "-o", "-"],
                 [VDBTRACE, "part.vdb", *SMALL, "-o", "full.png", "--stats", "-"], [GCODE2VDB, "part.gcode", *COARSE, "-o", "full.vdb"],

@@ -42,6 +42,11 @@ for print_, options in (("tile.gcode", []), ("tile.gcode", ["--mesh-error", "0"]
     least = report["grid"]["volume_mm3"]
     check(0.98 < made["volume_mm3"] / least < 1.02, f"  which is the level set's: {made['volume_mm3']:.2f}, {least:.2f} mm3")
 
+# Where a thin gap keeps the outside out, the mesh is closed all the same.
+for options in ([], ["--half-width", "2"]):
+    path, _ = mesh(gcode("two_tone.gcode"), "thin.stl", "--voxels-per-layer", "2", *options)
+    check(admesh(path)["Total disconnected facets"] == 0, f"two_tone.gcode {options}: the mesh is closed")
+
 # Skirts are no part of a model, unless features are asked for; and as few faces as asked for.
 gear = ["--voxel-size", "0.15", "--layers", "1:4"]
 _, alone = mesh(gcode("gear.gcode"), "alone.stl", *gear)

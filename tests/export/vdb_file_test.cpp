@@ -97,6 +97,13 @@ TEST_F(VdbFile, SaysWhereItCameFrom) {
     EXPECT_EQ(back->metaValue<openvdb::Int64>("file_voxel_count"),
               static_cast<openvdb::Int64>(grid->activeVoxelCount()));
     EXPECT_EQ(back->getGridClass(), openvdb::GRID_LEVEL_SET);
+    // A series describes one grid for each of its files.
+    provenance.snapshot = "layer0009";
+    describe(*grid, lattice, provenance);
+    EXPECT_EQ(grid->metaValue<std::string>("snapshot"), "layer0009");
+    provenance.snapshot.clear();
+    describe(*grid, lattice, provenance);
+    EXPECT_EQ((*grid)["snapshot"], nullptr);
 }
 
 TEST_F(VdbFile, HalfPrecisionIsGoodToAThousandthOfTheBand) {

@@ -13,31 +13,33 @@
 #include <string_view>
 #include <system_error>
 #include <utility>
+#include <vector>
 
 namespace stratum::tools {
 namespace {
 
 namespace fs = std::filesystem;
 
-// Equal for the same file only; empty for what can't be destroyed.
-std::string identityOf(const std::string& path) {
+// Each equal for the same file only: by its place in the file system, where it exists, and by its name, links and dots
+// resolved as far as they exist: an output is replaced, and then is another file. Empty for what can't be destroyed.
+std::vector<std::string> identitiesOf(const std::string& path) {
+    std::vector<std::string> identities;
     struct stat status {};
     if (::stat(path.c_str(), &status) == 0) {
         if (!S_ISREG(status.st_mode)) return {};
-        return fmt::format("{} {}", status.st_dev, status.st_ino);
+        identities.push_back(fmt::format("{} {}", status.st_dev, status.st_ino));
     }
-    // Not there yet: by its name, links and dots resolved as far as they exist.
     std::error_code failed;
     const fs::path whole = fs::weakly_canonical(fs::absolute(path, failed), failed);
-    return failed ? path : whole.string();
+    identities.push_back(failed ? path : whole.string());
+    return identities;
 }
 
 }  // namespace
 
 void RunFiles::reads(const std::string& path) {
     if (path.empty() || gcode::isStream(path)) return;
-    const std::string identity = identityOf(path);
-    if (!identity.empty()) uses_.try_emplace(identity, Use{path, "", true});
+    for (const std::string& identity : identitiesOf(path)) uses_.try_emplace(identity, Use{path, "", true});
 }
 
 void RunFiles::writes(const std::string& path, std::string_view option) {
@@ -48,11 +50,14 @@ void RunFiles::writes(const std::string& path, std::string_view option) {
 void RunFiles::use(const std::string& path, std::string_view option) {
     if (path.empty()) return;
     const bool standard = isStandardOutput(path);
-    const std::string identity = standard ? "-" : identityOf(path);
-    if (identity.empty()) return;
-    const auto [found, fresh] = uses_.try_emplace(identity, Use{path, std::string(option), false});
-    if (fresh) return;
-    const Use& before = found->second;
+    const std::vector<std::string> identities = standard ? std::vector<std::string>{"-"} : identitiesOf(path);
+    const auto known = std::find_if(identities.begin(), identities.end(),
+                                    [this](const std::string& identity) { return uses_.contains(identity); });
+    if (known == identities.end()) {
+        for (const std::string& identity : identities) uses_.emplace(identity, Use{path, std::string(option), false});
+        return;
+    }
+    const Use& before = uses_.at(*known);
     const std::string what = option.empty() ? path : fmt::format("{} {}", option, path);
     if (before.read)
         throw UsageError(before.path == path

@@ -114,6 +114,11 @@ exporter::SurfaceMesh Conversion::writeMesh(const openvdb::FloatGrid& grid, cons
         return meshOf(o_, grid, grids, provenance_.culled, materialsOf(toolpath_, plan_->selection()), output_);
     }();
     seconds_.mesh += watch_.lap();
+    if (mesh.faces.empty() && job.label.empty())
+        throw UsageError(
+            fmt::format("{}: the mesh has no triangles: all beads are finer than the voxels of {:g} mm; "
+                        "choose smaller ones, --voxel-size",
+                        job.path.string(), plan_->lattice().voxel_size));
     const ProgressNote note("writing", o_.common.quiet);
     exporter::writeMesh(mesh, job.path, {voxelize::millimetresIn(o_.unit), o_.up == "y"});
     return mesh;

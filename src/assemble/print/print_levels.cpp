@@ -30,18 +30,27 @@ using Json = nlohmann::ordered_json;
 // Removes the beads that are printed later.
 void cut(std::vector<std::uint32_t>& selection, const std::string& printed, const gcode::Toolpath& toolpath) {
     const std::vector<voxelize::Snapshot> cuts = voxelize::parseSnapshots(printed, toolpath, "--printed");
-    if (cuts.size() != 1)
+    if (cuts.size() > 1)
         throw UsageError(
             fmt::format("--printed {}: expected one moment, e.g. 50%, layer:40, time:90 or time:50%", printed));
-    const auto last = std::lower_bound(selection.begin(), selection.end(), cuts.front().bead_count);
-    selection.erase(last, selection.end());
+    const std::size_t beads = cuts.empty() ? 0 : cuts.front().bead_count;
+    selection.erase(std::lower_bound(selection.begin(), selection.end(), beads), selection.end());
     if (selection.empty())
         throw UsageError(fmt::format("--printed {}: nothing of what is selected is printed by then", printed));
 }
 
 // Equal steps of the extruded volume, or of time; the last one is all. Prints of few beads have fewer.
-std::vector<std::uint32_t> momentsOf(int series, bool by_time, const gcode::Toolpath& toolpath) {
+std::vector<std::uint32_t> momentsOf(int series, bool by_time, const gcode::Toolpath& toolpath,
+                                     const std::vector<std::uint32_t>& selection) {
     std::vector<std::uint32_t> moments;
+    if (selection.size() < toolpath.beads.size()) {
+        // Of what is selected, as films have it: shares of the whole file might show nothing until the end.
+        const auto by = by_time ? voxelize::GrowthBy::time : voxelize::GrowthBy::volume;
+        moments =
+            voxelize::growthMoments(toolpath, selection, {by, voxelize::equalShares(static_cast<std::size_t>(series))});
+        moments.erase(std::unique(moments.begin(), moments.end()), moments.end());
+        return moments;
+    }
     std::string steps;
     for (int n = 1; n < series; ++n)
         steps += fmt::format("{}{}{:.9g}%", n > 1 ? "," : "", by_time ? "time:" : "", 100.0 * n / series);
@@ -198,7 +207,7 @@ public:
         chooseLevels();
         describe();
         result_.moments = request_.growth ? voxelize::growthMoments(*toolpath_, selection_, *request_.growth)
-                                          : momentsOf(request_.series, request_.series_by_time, *toolpath_);
+                                          : momentsOf(request_.series, request_.series_by_time, *toolpath_, selection_);
         result_.tips = tipsOf(result_.moments, selection_, *toolpath_);
         result_.selection = std::move(selection_);
         result_.toolpath = std::move(toolpath_);

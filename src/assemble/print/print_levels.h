@@ -30,8 +30,8 @@ struct PrintRequest {
     bool timed = false;           ///< print times of the beads are needed
     int series = 1;               ///< of a growing print: the number of moments; the last one is the end
     bool series_by_time = false;  ///< equal times between them instead of equal volumes
-    /// A film's moments instead of a series: exactly these, of the selected beads, of which some may be equal. Those of
-    /// a series are shares of the whole file, each with more beads than the one before.
+    /// A film's moments instead of a series: exactly these, of which some may be equal. Those of a series have each
+    /// more beads than the one before. Both are of the selected beads.
     std::optional<voxelize::Growth> growth;
     /// The sizes of pixels on a print in the first box, mm, for print.voxel_auto and where no voxels are asked for;
     /// what else it gets is of the part alone. Null where the print does not stand alone, or the camera is not known.

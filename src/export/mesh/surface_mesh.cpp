@@ -195,10 +195,16 @@ SurfaceMesh meshSurface(const openvdb::FloatGrid& grid, const MeshOptions& optio
     // A triangle stays where its neighbours are as large: the error grows until there are few enough.
     constexpr double kFirstError = 0.25;
     constexpr double kMostError = 64;
+    // No farther than it helps: what is left may be borders of materials, which stay.
+    constexpr int kMostIdle = 5;  // steps
     double error = std::max(options.error, kFirstError);
-    while (options.most_triangles > 0 && mesh.triangleCount() > options.most_triangles && error <= kMostError) {
+    int idle = 0;
+    while (options.most_triangles > 0 && mesh.triangleCount() > options.most_triangles && error <= kMostError &&
+           idle < kMostIdle) {
+        const std::size_t before = mesh.triangleCount();
         simplifyBy(error, grid, labels, mesh);
         error *= 1.3;
+        idle = 100 * mesh.triangleCount() > 99 * before ? idle + 1 : 0;
     }
     if (options.color != nullptr) takeMaterials(labels, options.tool != nullptr, mesh);
     return mesh;

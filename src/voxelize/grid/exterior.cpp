@@ -199,12 +199,19 @@ private:
             LeafMask drop;
             for (std::size_t x = 0; x < 8; ++x)
                 drop.word[x] = (outside.word[x] & ~visible.word[x]) | (~outside.word[x] & ~near.word[x]);
-            const std::size_t active = activeWithout(*leafAt(c, k, slot), drop);
+            // Meshers look at sign changes beside active samples alone. The outside of a shown sample is inactive
+            // farther away than the band, so that dropped ones beside it stay active.
+            const LeafMask beside = dilateBall(shown, 1);
+            LeafMask edge;
+            for (std::size_t x = 0; x < 8; ++x) edge.word[x] = beside.word[x] & outside.word[x] & ~visible.word[x];
+            for (std::size_t x = 0; x < 8; ++x) drop.word[x] &= ~edge.word[x];
+            const std::size_t active = activeWithout(*leafAt(c, k, slot), drop, edge);
             if (active == 0) return;
             kept.fetch_add(1, std::memory_order_relaxed);
             kept_voxels.fetch_add(active, std::memory_order_relaxed);
             if (whole_ != nullptr) return;
-            turnInside(*leaves_[slot], drop);
+            turnInside(*leaves_[slot], drop, false);
+            turnInside(*leaves_[slot], edge, true);
             leaves[c].push_back(std::move(leaves_[slot]));
         });
         counts.kept = kept;
@@ -212,20 +219,21 @@ private:
         counts.evaluated = shown_.size() + evaluated;
     }
 
-    static std::size_t activeWithout(const Leaf& leaf, const LeafMask& drop) {
+    static std::size_t activeWithout(const Leaf& leaf, const LeafMask& drop, const LeafMask& edge) {
         std::size_t count = 0;
         for (openvdb::Index x = 0; x < 8; ++x)
             count += static_cast<std::size_t>(
-                std::popcount(leaf.getValueMask().getWord<openvdb::Index64>(x) & ~drop.word[x]));
+                std::popcount((leaf.getValueMask().getWord<openvdb::Index64>(x) & ~drop.word[x]) | edge.word[x]));
         return count;
     }
 
-    void turnInside(Leaf& leaf, const LeafMask& drop) const {
+    void turnInside(Leaf& leaf, const LeafMask& drop, bool active) const {
         float* values = leaf.buffer().data();
         for (openvdb::Index x = 0; x < 8; ++x) {
             for (std::uint64_t bits = drop.word[x]; bits != 0; bits &= bits - 1)
                 values[x * 64 + static_cast<openvdb::Index>(std::countr_zero(bits))] = -rule_.background;
-            leaf.getValueMask().getWord<openvdb::Index64>(x) &= ~drop.word[x];
+            auto& mask = leaf.getValueMask().getWord<openvdb::Index64>(x);
+            mask = active ? mask | drop.word[x] : mask & ~drop.word[x];
         }
     }
 
