@@ -4,6 +4,7 @@
 #include "convert/mesh_output.h"
 
 #include "base/checksum.h"
+#include "base/error.h"
 #include "export/mesh_file.h"
 #include "export/nano_file.h"
 #include "export/usd_file.h"
@@ -12,6 +13,8 @@
 #include "report/print_report.h"
 #include "voxelize/grid/interior_distance.h"
 #include "voxelize/grid/solid_check.h"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
