@@ -4,7 +4,6 @@
 #include "choices.h"
 #include "color_options.h"
 #include "command_source.h"
-#include "number_list.h"
 #include "print_options.h"
 
 #include "assemble/file/file_facts.h"
@@ -19,7 +18,9 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <charconv>
 #include <filesystem>
+#include <system_error>
 #include <utility>
 
 namespace stratum::tools {
@@ -166,9 +167,12 @@ void applyTurns(TraceCommand& o) {
     if (once && !film)
         throw UsageError(
             "--turntable: how many pictures? write --turntable 36, or make a film with --film part.mp4 --turntable");
-    const int turns = once ? 1
-                           : parseIntegers(o.turns, 1, ',', "--turntable",
-                                           "a whole number; put FILE before it, or write --turntable 1")[0];
+    int turns = once ? 1 : 0;
+    const char* const end = o.turns.data() + o.turns.size();
+    const auto [stop, error] = std::from_chars(o.turns.data(), end, turns);
+    if (!once && (error != std::errc{} || stop != end))
+        throw UsageError(fmt::format(
+            "--turntable {}: expected a whole number; put FILE before it, or write --turntable 1", o.turns));
     if (turns < 1 || turns > 10000) throw UsageError(fmt::format("--turntable {}: must be from 1 to 10000", o.turns));
     if (film)
         o.film.turns = turns;

@@ -37,12 +37,6 @@ CLI::Validator oneOf(const Names<Value, N>& names) {
 
 /// The same for enumerations, to be given to CLI::Option::transform(): the name becomes its number.
 CLI::Validator enumeration(std::vector<std::pair<std::string, int>> values);
-template <typename Value, std::size_t N>
-CLI::Validator enumeration(const Names<Value, N>& names) {
-    std::vector<std::pair<std::string, int>> values;
-    for (const auto& [name, value] : names) values.emplace_back(name, static_cast<int>(value));
-    return enumeration(std::move(values));
-}
 
 /// Notes the names for completion alone; the option's own reader checks them.
 CLI::Option* completes(CLI::Option* option, Completion how, const std::vector<std::string>& names);
