@@ -58,7 +58,7 @@ Outcome run(const Options& o, Writer writer) {
     Outcome outcome;
     outcome.whole = study::timesOf([&] {
                         voxelize::VoxelizeOptions options;
-                        options.in_memory = writer != Writer::stream;
+                        if (writer == Writer::stream) options.bytes_per_leaf = 0;
                         voxelize::Voxelizer voxelizer(toolpath, beads, lattice, options);
                         if (writer == Writer::stream) {
                             const auto bounds = voxelizer.leafBounds();

@@ -3,6 +3,7 @@
 #include "choices.h"
 #include "color_options.h"
 #include "command_line.h"
+#include "command_source.h"
 #include "convert/conversion.h"
 #include "convert/elements_output.h"
 #include "convert/mesh_output.h"
@@ -24,8 +25,10 @@
 #include <openvdb/openvdb.h>
 
 #include <filesystem>
+#include <initializer_list>
 #include <map>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -198,8 +201,25 @@ std::vector<fs::path> outputsOf(const tools::ConvertCommand& o) {
     return outputs;
 }
 
+// Options that one kind of output alone has.
+void refuseUnused(const tools::CommandSource& options, const tools::ConvertCommand& o, const fs::path& output) {
+    const bool mesh = exporter::isMeshPath(output);
+    const auto refuse = [&](std::initializer_list<std::string_view> names, std::string_view what) {
+        for (const std::string_view name : names)
+            if (options.given(name))
+                throw UsageError(fmt::format("{}: is for {}, not {}", options.called(name), what, output.string()));
+    };
+    if (!mesh) refuse({"mesh_error", "faces"}, "meshes: .stl, .ply, .obj, .3mf, .glb or .usda");
+    if (mesh || tools::isElementsPath(output)) refuse({"precision", "compression", "usda"}, "volumes: a .vdb");
+    if (exporter::isNanoPath(output)) refuse({"usda"}, "a .vdb");
+    if (o.forecast && o.common.stats.empty()) throw UsageError("--forecast: is a part of the report; add --stats FILE");
+    if (o.forecast && (mesh || tools::isElementsPath(output) || o.interior == "cull"))
+        throw UsageError(
+            "--forecast: is of a level set with all its inside, since meshes and --interior cull leave it out");
+}
+
 // What is asked of the output fits its kind. Before the work.
-void check(const tools::ConvertCommand& o, const std::vector<fs::path>& outputs) {
+void check(const tools::CommandSource& options, const tools::ConvertCommand& o, const std::vector<fs::path>& outputs) {
     if (outputs.size() > 1) {
         std::error_code ignored;
         if (fs::path(o.output).has_extension() && !fs::is_directory(o.output, ignored) && !o.output.ends_with('/'))
@@ -217,8 +237,7 @@ void check(const tools::ConvertCommand& o, const std::vector<fs::path>& outputs)
             "-o {}: the name must end in .vdb, .nvdb, .stl, .ply, .obj, .3mf, .glb, .usda or .inp", output.string()));
     if (nano && standard)
         throw UsageError(fmt::format("-o {}: NanoVDB can't be a stream; name a file", output.string()));
-    if (nano && o.usda) throw UsageError(fmt::format("--usda: names the .vdb of volumes, not {}", output.string()));
-    if (mesh && o.usda) throw UsageError(fmt::format("--usda: is for volumes; write a .vdb, not {}", output.string()));
+    refuseUnused(options, o, output);
     if (o.compare.grid && (mesh || !o.writesGrid()))
         throw UsageError("--grids deviation: is a grid beside the surface; write a .vdb or .nvdb");
     if (mesh) tools::checkMeshGrids(o, output);
@@ -244,10 +263,10 @@ void chooseElementSize(tools::ConvertCommand& o, const fs::path& output) {
     if (tools::isElementsPath(output) && !voxelize::choosesVoxels(print)) print.lattice.voxels_per_layer = 1;
 }
 
-void run(tools::ConvertCommand& o) {
+void run(const tools::CommandSource& options, tools::ConvertCommand& o) {
     const std::vector<fs::path> outputs = outputsOf(o);
     o.compare.grid = tools::takeDeviation(o);
-    check(o, outputs);
+    check(options, o, outputs);
     chooseElementSize(o, outputs.front());
     const bool folder = !o.output.empty() && outputs.front() != o.output;
     refuseEqualNames(o, outputs);
@@ -294,6 +313,6 @@ int main(int argc, char** argv) {
         }
         tools::useHugePages(argv);
         if (!options.compare.model.empty()) tools::keepFreedMemory();  // of the level set, for polygons and their tree
-        return run(options);
+        return run(source, options);
     });
 }

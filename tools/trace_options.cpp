@@ -328,6 +328,7 @@ void readPictureOptions(TraceCommand& o, const CLI::App& app) {
     }
     CommandSource options(app);
     assemble::readPicture(options, o);
+    assemble::refuseUnused(options, o);
     if (options.text("brdf") || options.text("color") || options.text("color_by"))
         for (assemble::ObjectOptions& object : o.objects) object.material = {};
     readPrintOptions(options, o.tracing.prints.print, true);

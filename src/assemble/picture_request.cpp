@@ -12,6 +12,8 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <string_view>
+#include <utility>
 
 namespace stratum::assemble {
 namespace {
@@ -155,6 +157,15 @@ void readPicture(OptionSource& options, PictureRequest& request) {
     readMaterial(options, request);
     readLight(options, request);
     readTracing(options, request);
+}
+
+void refuseUnused(OptionSource& options, const PictureRequest& request) {
+    static constexpr std::array<std::pair<std::string_view, std::string_view>, 4> kUsers = {
+        {{"phong", "phong"}, {"ao_distance", "ao"}, {"bounces", "path"}, {"exact_translucency", "path"}}};
+    const std::string& integrator = request.render.integrator.name;
+    for (const auto& [option, user] : kUsers)
+        if (integrator != user && options.given(option))
+            options.refuse(option, fmt::format("integrator {}; {} does not use it", user, integrator));
 }
 
 std::optional<std::size_t> brickCacheOf(OptionSource& options) {

@@ -33,6 +33,10 @@ struct PictureRequest : PictureOptions {
 /// Throws what the source throws, UsageError for texts that mean nothing, and InputError.
 void readPicture(OptionSource& options, PictureRequest& request);
 
+/// Refuses what one integrator alone uses where another makes the picture. Of the last source: a scene may have options
+/// of several, for a command line that chooses.
+void refuseUnused(OptionSource& options, const PictureRequest& request);
+
 /// "brick_cache", bytes.
 std::optional<std::size_t> brickCacheOf(OptionSource& options);
 

@@ -47,6 +47,10 @@ public:
     bool says(std::string_view name, std::string_view word) override {
         return ask(name, [=](JsonSection& section, std::string_view key) { return section.says(key, word); });
     }
+    bool given(std::string_view name) const override {
+        const Place place = placeOf(name);
+        return sections_[place.section] != nullptr && sections_[place.section]->given(place.key);
+    }
     std::string called(std::string_view name) const override {
         const Place place = placeOf(name);
         return sections_[place.section]->called(place.key);

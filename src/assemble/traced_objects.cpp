@@ -128,11 +128,14 @@ public:
     const Shape& shapeOf(const ObjectOptions& object, TracedObjects& result) {
         if (object.sdf) return keep(shapeOfSdf(object, options_), result);
         auto& known = files_[{object.vdb, object.grid}];
-        if (known == nullptr)
-            known = &keep(!options_.prints.toolpath && isVdbFile(object.vdb)
-                              ? shapeOfLevelSet(object, options_, needs_, warnings_)
-                              : shapeOfPrint(object, options_, needs_, warnings_),
-                          result);
+        if (known != nullptr) return *known;
+        const bool print = options_.prints.toolpath || !isVdbFile(object.vdb);
+        if (print && !object.grid.empty())
+            throw UsageError(
+                fmt::format("{}: is G-code, which has no grid {}; leave --grid out", object.vdb, object.grid));
+        known = &keep(print ? shapeOfPrint(object, options_, needs_, warnings_)
+                            : shapeOfLevelSet(object, options_, needs_, warnings_),
+                      result);
         return *known;
     }
     const std::vector<Warning>& warnings() const { return warnings_.all(); }

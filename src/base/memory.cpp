@@ -1,5 +1,10 @@
 #include "base/memory.h"
 
+#include "base/error.h"
+#include "base/human_text.h"
+
+#include <fmt/format.h>
+
 #include <sys/resource.h>
 #include <unistd.h>
 
@@ -102,6 +107,13 @@ std::size_t availableMemory() {
     const auto page = static_cast<std::size_t>(::sysconf(_SC_PAGESIZE));
     least = std::min({least, leftOf(RLIMIT_AS, pages[0] * page), leftOf(RLIMIT_DATA, pages[5] * page)});
     return least / 10 * 9;
+}
+
+void requireMemory(double bytes, std::string_view what, std::string_view advice, std::size_t limit) {
+    const auto free = static_cast<double>(limit);
+    if (bytes > free)
+        throw UsageError(
+            fmt::format("{} needs about {}, {} are free; {}", what, humanBytes(bytes), humanBytes(free), advice));
 }
 
 }  // namespace stratum

@@ -1,6 +1,7 @@
 #include "compare/comparison.h"
 
 #include "base/error.h"
+#include "base/memory.h"
 #include "base/parallel_for.h"
 #include "compare/another_model.h"
 #include "compare/surface_samples.h"
@@ -253,6 +254,7 @@ double shownDeviation(const Comparison& comparison) {
 
 openvdb::FloatGrid::Ptr deviationGrid(const openvdb::FloatGrid& surface, const openvdb::math::Transform& to_mm,
                                       const ClosedModel& model, const Comparison& comparison) {
+    requireMemory(static_cast<double>(surface.memUsage()), "a grid of deviations", "choose a larger voxel");
     using Leaf = openvdb::FloatTree::LeafNodeType;
     auto grid =
         openvdb::FloatGrid::create(std::make_shared<openvdb::FloatTree>(surface.tree(), 0.0F, openvdb::TopologyCopy()));

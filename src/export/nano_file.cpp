@@ -2,6 +2,7 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "base/memory.h"
 #include "base/text.h"
 
 #define NANOVDB_USE_BLOSC
@@ -68,6 +69,9 @@ Handle handleOf(const openvdb::GridBase::Ptr& grid, bool half) {
 bool isNanoPath(const std::filesystem::path& path) { return lowerCase(path.extension().string()) == ".nvdb"; }
 
 void writeNano(const openvdb::GridPtrVec& grids, const std::filesystem::path& path, const FileOptions& options) {
+    double bytes = 0;
+    for (const openvdb::GridBase::Ptr& grid : grids) bytes += static_cast<double>(grid->memUsage());
+    requireMemory(kNanoCopies * bytes, path.string(), "choose a larger voxel, fewer grids or a .vdb");
     AtomicFile(path).write([&](const std::filesystem::path& to) {
         std::vector<Handle> handles;
         handles.reserve(grids.size());

@@ -9,13 +9,16 @@
 
 namespace stratum::exporter {
 
+/// Of the grids' memory while they are written: once more in NanoVDB's form, and packed; measured.
+constexpr double kNanoCopies = 1.3;
+
 /// Whether the name ends in .nvdb, in any case.
 bool isNanoPath(const std::filesystem::path& path);
 
 /// Writes grids of floats, Int32 and Vec3s, in the given order, with statistics and checksums of their nodes. With
 /// FileOptions::half floats are Fp16: 16 bits between the least and the largest value of each 8^3 leaf. NanoVDB keeps
 /// names, classes and transforms, but none of the other metadata. The same bytes for any number of threads. Throws
-/// OutputError; the old file then stays.
+/// UsageError if memory is short, OutputError; the old file then stays.
 void writeNano(const openvdb::GridPtrVec& grids, const std::filesystem::path& path, const FileOptions& options = {});
 
 }  // namespace stratum::exporter

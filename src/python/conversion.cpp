@@ -73,7 +73,7 @@ void writePrint(const ToolpathObject& print, const exporter::LevelSetPlan& plan,
     }
     voxelize::VoxelizeOptions options = plan.voxelizeOptions();
     options.progress = report;
-    options.in_memory = false;
+    options.bytes_per_leaf = 0;
     voxelize::Voxelizer voxelizer(*print.toolpath, plan.selection(), plan.lattice(), std::move(options));
     const openvdb::FloatGrid::Ptr empty = voxelizer.emptyGrid();
     exporter::describe(*empty, plan.lattice(), provenanceOf(print, plan));

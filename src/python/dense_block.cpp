@@ -129,12 +129,8 @@ void requireFits(const openvdb::CoordBBox& box) {
         if (!(size > 0)) throw UsageError("box: has no sample inside; make it larger than a voxel");
         count *= size;
     }
-    const double bytes = count * sizeof(float);
-    if (bytes > static_cast<double>(availableMemory()))
-        throw UsageError(
-            fmt::format("a dense block of {} needs {}: choose a smaller box or larger voxels, or take the "
-                        "sparse level set of voxelize()",
-                        humanCount(count), humanBytes(bytes)));
+    requireMemory(count * sizeof(float), fmt::format("a dense block of {}", humanCount(count)),
+                  "choose a smaller box or larger voxels, or take the sparse level set of voxelize()");
 }
 
 void fillDense(const std::shared_ptr<const gcode::Toolpath>& toolpath, std::span<const std::uint32_t> selection,

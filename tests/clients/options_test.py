@@ -96,6 +96,33 @@ with open(path("scene.json"), "w", encoding="utf-8") as file:
 refused([VDBTRACE, "scene.json", "--layers", "1:2"], 2, "--layers: needs G-code")
 does(VDBTRACE, "t.gcode", *SMALL, *COARSE, "--printed", "50%", "-o", "half.png")
 
+# --- what only one integrator, printer or kind of output uses -----------------------------------------------------------
+for words, user in ((["--phong", "1,1,1,500,0"], "phong"), (["--ao-distance", "2"], "ao"), (["--bounces", "2"], "path"),
+                    (["--exact-translucency"], "path")):
+    for integrator in ("path", "direct", "phong", "ao", "normal", "depth"):
+        command = [VDBTRACE, "t.vdb", *SMALL, "--integrator", integrator, *words]
+        if integrator == user:
+            does(*command)
+        else:
+            refused(command, 2, words[0], f"expected integrator {user}; {integrator} does not use it")
+with open(path("scene.json"), "w", encoding="utf-8") as file:
+    file.write('{"print": "t.vdb", "spp": 1, "size": [32, 24], "integrator": {"name": "path", "ao_distance": 3}}')
+does(VDBTRACE, "scene.json")
+does(VDBTRACE, "scene.json", "--integrator", "ao")
+refused([VDBTRACE, "t.gcode", *SMALL, *COARSE, "--grid", "surface"], 2, "t.gcode: is G-code, which has no grid surface")
+for words in (["--pressure-advance", "0.05"], ["--strings"]):
+    refused([GCODE2VDB, "t.gcode", *COARSE, *words], 2, words[0], "printer typical, or a flow_lag")
+    does(GCODE2VDB, "t.gcode", *COARSE, *words, "--flow-lag", "0.05")
+for output in ("p.vdb", "p.nvdb", "p.inp"):
+    for words in (["--faces", "1000"], ["--mesh-error", "0.5"]):
+        refused([GCODE2VDB, "t.gcode", *COARSE, "-o", output, *words], 2, f"{words[0]}: is for meshes: .stl")
+for output in ("p.stl", "p.inp"):
+    for words in (["--precision", "half"], ["--compression", "zip"], ["--usda"]):
+        refused([GCODE2VDB, "t.gcode", *COARSE, "-o", output, *words], 2, f"{words[0]}: is for volumes: a .vdb")
+refused([GCODE2VDB, "t.gcode", *COARSE, "-o", "p.nvdb", "--usda"], 2, "--usda: is for a .vdb")
+refused([GCODE2VDB, "t.gcode", *COARSE, "--forecast"], 2, "--forecast", "--stats")
+refused([GCODE2VDB, "t.gcode", *COARSE, "--forecast", "--stats", "s.json", "--interior", "cull"], 2, "--forecast: is of a level set")
+
 # --- no output is an input, nor another output ---------------------------------------------------------------------------
 os.link(path("t.gcode"), path("hard.csv"))
 os.symlink("t.gcode", path("soft.csv"))

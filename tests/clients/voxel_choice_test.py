@@ -2,7 +2,9 @@
 
 import json
 import os
+import resource
 import subprocess
+import sys
 import tempfile
 
 from run_tools import BIN, check, corpus, gcode, run
@@ -44,6 +46,27 @@ for source in sources:
         check(held(report) > 0.85, f"{' '.join(options)}: holds {held(report):.3f}")
         check("voxel a layer" in said or "voxels a layer" in said, f"  and is warned of: {said.strip()}")
         check("half a voxel" in report["grid"]["choice"], f"  and shifted: {report['grid']['choice']}")
+
+# A budget holds for what is made beside the surface, and memory that is short is said before it is gone.
+PEAK = "import resource, subprocess, sys; status = subprocess.call(sys.argv[1:]); " \
+       "print(status, resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss)"
+with_color = ["--grids", "layer,color"]
+for options in (with_color, ["--interior", "cull", *with_color], ["--interior-distance"], ["-o", os.path.join(FOLDER, "b.nvdb")],
+                ["-o", os.path.join(FOLDER, "b.stl")]):
+    if "-o" not in options:
+        options = ["-o", out, *options]
+    command = [os.path.join(BIN, "gcode2vdb"), gcode("gear.gcode"), "--force", "--quiet", *options]
+    done = run(sys.executable, "-c", PEAK, *command, "--memory-budget", "700MB")
+    status, peak = (int(word) for word in done.split()[-2:])
+    # The program and its toolpath are not the budget's.
+    check(status == 0 and 100e3 < peak < 760e3, f"{' '.join(options)} within 700 MB: {status} {peak} kB")
+    for megabytes in (300, 500, 1000):
+        limit = (megabytes << 20, megabytes << 20)
+        done = subprocess.run(command + ["--voxels-per-layer", "5"], capture_output=True, text=True,
+                              preexec_fn=lambda limit=limit: resource.setrlimit(resource.RLIMIT_AS, limit))
+        refused = done.returncode == 2 and "are free; choose a larger voxel" in done.stderr
+        check(refused or done.returncode == 0 or done.returncode == 1 and "out of memory" in done.stderr,
+              f"  of {megabytes} MB: {done.returncode} {done.stderr.strip()}")
 
 # Layers far thinner than a voxel can't be there: that is said.
 report, said, _ = convert(gcode("tile.gcode"), "-o", out, "--voxel-size", "1.5")

@@ -34,7 +34,7 @@ protected:
         const std::vector<std::uint32_t> beads = test::allBeads(toolpath);
         voxelize::VoxelizeOptions voxelize_options;
         voxelize_options.placement = placement;
-        voxelize_options.in_memory = false;
+        voxelize_options.bytes_per_leaf = 0;
         voxelize::Voxelizer voxelizer(toolpath, beads, lattice, voxelize_options);
         const auto grid = voxelizer.emptyGrid();
         describe(*grid, lattice, provenance_);

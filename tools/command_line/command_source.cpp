@@ -41,6 +41,11 @@ std::string CommandSource::called(std::string_view name) const {
     return option;
 }
 
+bool CommandSource::given(std::string_view name) const {
+    const CLI::Option* option = app_->get_option_no_throw(called(name));
+    return option != nullptr && option->count() > 0;
+}
+
 std::vector<std::string> CommandSource::texts(std::string_view name) {
     const CLI::Option* option = app_->get_option_no_throw(called(name));
     return option != nullptr ? option->results() : std::vector<std::string>();
@@ -92,8 +97,14 @@ void CommandSource::fail(std::string_view name, std::string_view expected) const
     // What a list looks like; of other options the type says less than the text.
     const std::string type = option->get_type_name();
     const std::string form = type.find_first_of(",x") != std::string::npos ? type + ": " : "";
-    throw UsageError(
-        fmt::format("{} {}: expected {}{}", called(name), fmt::join(option->results(), " "), form, expected));
+    refuse(name, form + std::string(expected));
+}
+
+void CommandSource::refuse(std::string_view name, std::string_view expected) const {
+    const CLI::Option* option = app_->get_option(called(name));
+    const bool flag = option->get_type_size_max() == 0;
+    throw UsageError(fmt::format("{}{}: expected {}", called(name),
+                                 flag ? "" : fmt::format(" {}", fmt::join(option->results(), " ")), expected));
 }
 
 CLI::Option* Declarations::operator()(const char* name, const char* type, const std::string& help) const {

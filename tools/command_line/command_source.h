@@ -27,9 +27,10 @@ public:
     std::vector<double> list(std::string_view name, char separator = ',') override;
     std::vector<std::string> texts(std::string_view name) override;
     bool says(std::string_view name, std::string_view word) override { return text(name) == word; }
+    bool given(std::string_view name) const override;
     std::string called(std::string_view name) const override;
     [[noreturn]] void fail(std::string_view name, std::string_view expected) const override;
-    [[noreturn]] void refuse(std::string_view name, std::string_view expected) const override { fail(name, expected); }
+    [[noreturn]] void refuse(std::string_view name, std::string_view expected) const override;
 
 private:
     const CLI::App* app_;

@@ -50,6 +50,10 @@ exporter::LevelSetChoices choicesOf(const ConvertCommand& o, const fs::path& out
         choices.attributes.emplace();
     else if (!o.grids.empty())
         choices.attributes = voxelize::parseGrids(o.grids);
+    if (as_mesh)
+        choices.output = exporter::Output::mesh;
+    else if (exporter::isNanoPath(output))
+        choices.output = exporter::Output::nano;
     choices.unit = o.unit;
     choices.up = o.up;
     choices.origin = o.origin;
@@ -183,7 +187,7 @@ std::vector<ConversionJob> Conversion::planJobs() const {
 
 voxelize::VoxelizeOptions Conversion::voxelizeOptions() {
     voxelize::VoxelizeOptions options = plan_->voxelizeOptions();
-    options.in_memory = !streams();
+    if (streams()) options.bytes_per_leaf = 0;
     if (showsProgress(o_.common.quiet))
         options.progress = [this](double fraction) {
             if (bar_) bar_->show(fraction);

@@ -74,8 +74,8 @@ void Conversion::makeInMemory(voxelize::Voxelizer& voxelizer, const ConversionJo
     bar_.reset();
     if (o_.interior_distance) {
         const ProgressNote note("distances", o_.common.quiet);
-        // The voxelizer goes on from its own values at the next step.
-        grid = grid->deepCopy();
+        // The voxelizer goes on from its own values.
+        if (!job.label.empty() || o_.forecast) grid = grid->deepCopy();
         voxelize::sweepInterior(*grid);
     }
     seconds_.voxelize += watch_.lap();

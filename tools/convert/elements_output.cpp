@@ -73,7 +73,6 @@ void checkElementOptions(const ConvertCommand& o, const fs::path& output) {
         throw UsageError(fmt::format("{}: {} has {}; leave it out, or write a .vdb", option, output.string(), why));
     };
     if (!o.grids.empty()) refuse("--grids", "sets of layers, features and tools instead of grids");
-    if (o.usda) refuse("--usda", "no volume");
     if (!o.snapshots.empty()) refuse("--snapshots", "one state of the print: choose it with --layers");
     if (!o.interior.empty()) refuse("--interior", "all solid elements");
     if (o.interior_distance) refuse("--interior-distance", "no distances");

@@ -43,12 +43,8 @@ void requireFilm(const std::filesystem::path& path, const FilmFormat& format) {
     if (kind != FilmKind::gif) return;
     // The palette is of all frames, which ffmpeg keeps until it has seen the last one.
     const double bytes = 3.0 * format.width * format.height * static_cast<double>(format.frames);
-    const auto available = static_cast<double>(availableMemory());
-    if (bytes > available)
-        throw UsageError(fmt::format(
-            "--film {}: for its palette ffmpeg must keep all frames, {} of the {} that are free; make a .mp4, or less "
-            "--seconds, --fps or --size",
-            path.string(), humanBytes(bytes), humanBytes(available)));
+    requireMemory(bytes, fmt::format("--film {}: ffmpeg keeps all frames for its palette, which", path.string()),
+                  "make a .mp4, or less --seconds, --fps or --size");
 }
 
 std::unique_ptr<FilmFile> makeFilmFile(const std::filesystem::path& path, const FilmFormat& format) {

@@ -13,6 +13,7 @@
 #include <fmt/ranges.h>
 
 #include <limits>
+#include <string_view>
 #include <utility>
 
 namespace stratum::assemble {
@@ -52,6 +53,9 @@ void readReading(OptionSource& options, voxelize::PrintOptions& print) {
     assign(read.deposit.sag, options.numberIn("sag", 0, deposit::kMostSag));
     assign(read.deposit.crown, options.numberIn("crown", 0, gcode::kMostCrown));
     assign(read.deposit.strings, options.flag("strings"));
+    for (const std::string_view option : {"pressure_advance", "strings"})
+        if (!read.deposit.flow_lag && options.given(option))
+            options.refuse(option, "a printer whose flow lags: printer typical, or a flow_lag");
 }
 
 void readSelection(OptionSource& options, voxelize::PrintOptions& print) {

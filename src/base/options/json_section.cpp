@@ -21,6 +21,8 @@ const nlohmann::json* JsonSection::find(std::string_view key) {
     return found == json_->end() ? nullptr : &*found;
 }
 
+bool JsonSection::given(std::string_view key) const { return json_->contains(key); }
+
 std::optional<double> JsonSection::number(std::string_view key) {
     const Json* j = find(key);
     if (!j) return std::nullopt;

@@ -32,6 +32,7 @@ public:
     std::vector<double> list(std::string_view key, char separator = ',') override;
     std::vector<std::string> texts(std::string_view key) override;
     bool says(std::string_view key, std::string_view word) override;
+    bool given(std::string_view key) const override;
     std::string called(std::string_view key) const override;
     [[noreturn]] void fail(std::string_view key, std::string_view expected) const override;
     [[noreturn]] void refuse(std::string_view key, std::string_view expected) const override { fail(key, expected); }

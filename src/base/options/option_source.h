@@ -40,6 +40,7 @@ public:
     /// Whether the value is this text, where another is no text.
     virtual bool says(std::string_view name, std::string_view word) = 0;
 
+    virtual bool given(std::string_view name) const = 0;
     /// How people call the option there.
     virtual std::string called(std::string_view name) const = 0;
     /// The value has a wrong kind or form.

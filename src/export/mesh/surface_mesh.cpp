@@ -1,5 +1,6 @@
 #include "export/mesh/surface_mesh.h"
 
+#include "base/memory.h"
 #include "base/parallel_for.h"
 #include "base/srgb.h"
 #include "base/union_find.h"
@@ -157,6 +158,8 @@ void simplifyBy(double error, const openvdb::FloatGrid& grid, std::vector<std::u
 }  // namespace
 
 SurfaceMesh meshSurface(const openvdb::FloatGrid& grid, const MeshOptions& options) {
+    requireMemory(kMeshBytesPerLeaf * grid.tree().leafCount(), "a mesh of it",
+                  "choose a larger voxel, fewer layers or features, or --interior cull");
     const openvdb::FloatGrid::Ptr copy = grid.deepCopy();
     clearSurface(*copy);
     SurfaceMesh mesh;

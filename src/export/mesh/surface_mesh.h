@@ -11,6 +11,10 @@
 
 namespace stratum::exporter {
 
+/// Of memory while a surface is meshed, for each leaf of its grid: the copy, points, faces and lists for simplifying;
+/// measured.
+constexpr double kMeshBytesPerLeaf = 25e3;
+
 /// What a part of the surface is made of.
 struct MeshMaterial {
     std::string name;                     ///< of letters, digits and '_': "tool_0", "tool_0_ff8000", "filament"
@@ -65,7 +69,8 @@ struct MeshOptions {
 /// Meshes the zero level with OpenVDB's dual mesher (volumeToMesh; Ju et al., SIGGRAPH 2002, is the method). Samples
 /// within a thousandth of a voxel of the surface are first moved that far inside: a print's layer planes are on
 /// samples, and a sheet of zeros between two solids would become two coincident faces. Where neighbouring cells still
-/// get the same point, faces are collapsed; the mesh stays closed. Works on a copy of the grid.
+/// get the same point, faces are collapsed; the mesh stays closed. Works on a copy of the grid. Throws UsageError if
+/// memory is short.
 SurfaceMesh meshSurface(const openvdb::FloatGrid& grid, const MeshOptions& options = {});
 
 }  // namespace stratum::exporter

@@ -1,7 +1,10 @@
 #include "export/plan/level_set_plan.h"
 
+#include "export/mesh/surface_mesh.h"
+#include "export/nano_file.h"
 #include "gcode/toolpath/color.h"
 #include "voxelize/beads/part_outline.h"
+#include "voxelize/grid/interior_distance.h"
 
 #include <algorithm>
 #include <iterator>
@@ -14,14 +17,25 @@ LevelSetPlan::LevelSetPlan(const gcode::Toolpath& toolpath, LevelSetChoices choi
       choices_(std::move(choices)),
       selection_(selected()),
       bounds_(voxelize::boundsOf(toolpath, selection_)),
-      lattice_(voxelize::latticeFor(choices_.print, toolpath, selection_, bounds_, choices_.interior)),
+      colors_(gcode::distinctColors(toolpath, selection_)),
+      attributes_(chosenAttributes()),
+      lattice_(
+          voxelize::latticeFor(choices_.print, toolpath, selection_, bounds_, choices_.interior, 0, bytesPerLeaf())),
       lying_(toolpath.belt_angle == 0 ? bounds_ : voxelize::boundsOf(toolpath, selection_, toolpath.belt_angle)),
-      placement_(voxelize::placementOf(choices_.unit, choices_.up, choices_.origin, lying_, toolpath.belt_angle)),
-      colors_(gcode::distinctColors(toolpath, selection_)) {
-    if (choices_.attributes)
-        attributes_ = *choices_.attributes;
-    else if (addsColor())
-        attributes_.push_back(voxelize::Attribute::color);
+      placement_(voxelize::placementOf(choices_.unit, choices_.up, choices_.origin, lying_, toolpath.belt_angle)) {}
+
+std::vector<voxelize::Attribute> LevelSetPlan::chosenAttributes() const {
+    if (choices_.attributes) return *choices_.attributes;
+    if (addsColor()) return {voxelize::Attribute::color};
+    return {};
+}
+
+double LevelSetPlan::bytesPerLeaf() const {
+    double bytes = voxelize::bytesPerLeaf(attributes_);
+    if (choices_.output == Output::nano) bytes *= 1 + kNanoCopies;
+    if (choices_.output == Output::mesh) bytes += kMeshBytesPerLeaf;
+    if (choices_.interior_distance) bytes += voxelize::kSweepBytesPerLeaf;
+    return bytes;
 }
 
 std::vector<std::uint32_t> LevelSetPlan::selected() {
@@ -41,6 +55,7 @@ voxelize::VoxelizeOptions LevelSetPlan::voxelizeOptions() const {
     voxelize::VoxelizeOptions options;
     options.placement = placement_;
     options.interior = choices_.interior;
+    options.bytes_per_leaf = bytesPerLeaf();
     return options;
 }
 

@@ -20,6 +20,9 @@
 
 namespace stratum::exporter {
 
+/// What the level set is written as. Each holds more than the grids while it writes, but for .vdb files.
+enum class Output : std::uint8_t { vdb, nano, mesh };
+
 /// As gcode2vdb's options of those names.
 struct LevelSetChoices {
     voxelize::PrintOptions print;
@@ -30,6 +33,7 @@ struct LevelSetChoices {
     bool part_alone = false;
     std::optional<std::vector<voxelize::Attribute>> attributes;  ///< nothing: color, if the beads have several
     std::string unit = "mm", up = "z", origin = "bed";
+    Output output = Output::vdb;
 };
 
 /// The choices for one toolpath. Immutable.
@@ -65,6 +69,8 @@ public:
 
 private:
     std::vector<std::uint32_t> selected();
+    std::vector<voxelize::Attribute> chosenAttributes() const;
+    double bytesPerLeaf() const;
     const std::vector<gcode::Purpose>& purposes() const;
 
     const gcode::Toolpath& toolpath_;
@@ -73,11 +79,11 @@ private:
     std::size_t left_out_ = 0;
     std::vector<std::uint32_t> selection_;
     voxelize::Bounds bounds_;
+    std::vector<std::optional<gcode::Rgb>> colors_;
+    std::vector<voxelize::Attribute> attributes_;
     voxelize::Lattice lattice_;
     voxelize::Bounds lying_;
     voxelize::Placement placement_;
-    std::vector<std::optional<gcode::Rgb>> colors_;
-    std::vector<voxelize::Attribute> attributes_;
 };
 
 }  // namespace stratum::exporter

@@ -26,10 +26,8 @@ bool isNumber(const py::handle& value) {
 
 std::optional<py::object> Keywords::find(std::string_view name) {
     if (std::find(known_.begin(), known_.end(), name) == known_.end()) known_.emplace_back(name);
-    const py::str key(name.data(), name.size());
-    if (!given_->contains(key)) return std::nullopt;
-    py::object value = (*given_)[key];
-    if (value.is_none()) return std::nullopt;
+    if (!given(name)) return std::nullopt;
+    py::object value = (*given_)[py::str(name.data(), name.size())];
     if (std::find(found_.begin(), found_.end(), name) == found_.end()) found_.emplace_back(name);
     return value;
 }
@@ -47,6 +45,11 @@ double Keywords::finite(std::string_view name, const py::handle& value) const {
     if (!std::isfinite(number))
         throw UsageError(fmt::format("{}(): {}: expected a finite number, not {}", function_, name, number));
     return number;
+}
+
+bool Keywords::given(std::string_view name) const {
+    const py::str key(name.data(), name.size());
+    return given_->contains(key) && !(*given_)[key].is_none();
 }
 
 std::optional<double> Keywords::number(std::string_view name) {

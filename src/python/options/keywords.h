@@ -31,6 +31,7 @@ public:
     std::vector<double> list(std::string_view name, char separator = ',') override;
     std::vector<std::string> texts(std::string_view name) override;
     bool says(std::string_view name, std::string_view word) override;
+    bool given(std::string_view name) const override;
     std::string called(std::string_view name) const override;
     /// Throws TypeError.
     [[noreturn]] void fail(std::string_view name, std::string_view expected) const override;

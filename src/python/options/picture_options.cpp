@@ -9,6 +9,7 @@ namespace stratum::python {
 RenderCall renderCallOf(Keywords& options) {
     RenderCall call;
     assemble::readPicture(options, call);
+    assemble::refuseUnused(options, call);
     assemble::completeSamples(call);
     const auto since = [&options](std::size_t begin) {
         return std::vector<std::string>(options.found().begin() + static_cast<std::ptrdiff_t>(begin),

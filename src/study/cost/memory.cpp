@@ -68,7 +68,7 @@ void measureStream(const gcode::Toolpath& toolpath, const std::vector<std::uint3
     exporter::WrittenGrid written;
     const double seconds = timesOf([&] {
                                voxelize::VoxelizeOptions options;
-                               options.in_memory = false;
+                               options.bytes_per_leaf = 0;
                                voxelize::Voxelizer voxelizer(toolpath, beads, lattice, options);
                                const openvdb::FloatGrid::Ptr empty = voxelizer.emptyGrid();
                                exporter::describe(*empty, lattice, {});

@@ -3,7 +3,6 @@
 #include "base/error.h"
 #include "base/memory.h"
 #include "base/parallel_for.h"
-#include "voxelize/beads/estimate.h"
 
 #include <fmt/format.h>
 
@@ -79,7 +78,8 @@ void chooseByItself(const gcode::Toolpath& toolpath, std::span<const std::uint32
     const auto voxelsAt = [&](int count) {
         return estimateActiveVoxels(toolpath, selection, lattice.layer_height / count, request.half_width);
     };
-    const double affordable = kComfortableShare * memory / kBytesPerActiveVoxel;
+    const double bytes_per_voxel = kBytesPerActiveVoxel * (request.bytes_per_leaf / kBytesPerLeaf);
+    const double affordable = kComfortableShare * memory / bytes_per_voxel;
     int count = kFinestVoxelsPerLayer;
     bool short_of_memory = false;
     while (count > kCoarsestVoxelsPerLayer && voxelsAt(count) > std::min(kComfortableActiveVoxels, affordable)) {
@@ -98,7 +98,7 @@ void chooseByItself(const gcode::Toolpath& toolpath, std::span<const std::uint32
     if (facets) lattice.reason += fmt::format("; a pixel spans {:.3g} mm", request.pixel);
     if (short_of_memory)
         lattice.reason += fmt::format("; {} would take about {:.2g} GB of the {:.2g} GB that are free", count + 1,
-                                      voxelsAt(count + 1) * kBytesPerActiveVoxel * 1e-9, memory * 1e-9);
+                                      voxelsAt(count + 1) * bytes_per_voxel * 1e-9, memory * 1e-9);
 }
 
 // Voxels larger than the part, and more voxels than an index can count.

@@ -8,6 +8,7 @@
 
 #include "gcode/toolpath/toolpath.h"
 #include "voxelize/beads/bead_field.h"
+#include "voxelize/beads/estimate.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -19,11 +20,12 @@ namespace stratum::voxelize {
 
 /// The user's request; at most one of voxel_size and voxels_per_layer.
 struct LatticeRequest {
-    std::optional<double> voxel_size;     ///< mm
-    std::optional<int> voxels_per_layer;  ///< 1..64
-    double half_width = 3;                ///< voxels, 1..10; OpenVDB's tools expect 3
-    double pixel = 0;                     ///< mm that a pixel of the picture spans at least; 0: not known
-    std::size_t memory = 0;               ///< bytes that a grid of the default size may take; 0: availableMemory()
+    std::optional<double> voxel_size;       ///< mm
+    std::optional<int> voxels_per_layer;    ///< 1..64
+    double half_width = 3;                  ///< voxels, 1..10; OpenVDB's tools expect 3
+    double pixel = 0;                       ///< mm that a pixel of the picture spans at least; 0: not known
+    std::size_t memory = 0;                 ///< bytes that a grid of the default size may take; 0: availableMemory()
+    double bytes_per_leaf = kBytesPerLeaf;  ///< of that grid and of what is made beside it
 };
 
 /// Sample (i, j, k) lies at (i, j, k) * voxel_size + (0, 0, origin_z) in print space.

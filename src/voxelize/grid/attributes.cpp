@@ -7,6 +7,7 @@
 #include "gcode/slicer/bead_colors.h"
 #include "gcode/summary.h"
 #include "voxelize/beads/bead_field.h"
+#include "voxelize/beads/estimate.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -201,6 +202,16 @@ void fill(openvdb::GridBase& base, const openvdb::Coord& origin, std::span<const
 AttributeKind attributeKind(Attribute attribute) { return factsOf(attribute).kind; }
 std::string_view attributeName(Attribute attribute) { return factsOf(attribute).name; }
 bool usesTiming(Attribute attribute) { return factsOf(attribute).uses_timing; }
+
+double bytesPerLeaf(std::span<const Attribute> attributes) {
+    double bytes = kBytesPerLeaf;
+    for (const Attribute attribute : attributes) {
+        const std::size_t value =
+            attributeKind(attribute) == AttributeKind::color ? sizeof(openvdb::Vec3f) : sizeof(float);
+        bytes += kBytesPerLeaf + static_cast<double>(openvdb::FloatTree::LeafNodeType::SIZE * (value - sizeof(float)));
+    }
+    return bytes;
+}
 
 std::vector<std::string_view> attributeNames() {
     std::vector<std::string_view> names;

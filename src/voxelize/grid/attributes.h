@@ -42,6 +42,8 @@ std::string_view attributeName(Attribute attribute);
 std::vector<std::string_view> attributeNames();
 /// Of a grid of gcode2vdb of that name, `deviation` included: "mm", "mm/s"; empty if it has none.
 std::string_view attributeUnit(std::string_view name);
+/// Bytes of memory for each leaf of a surface: of the surface and of these grids beside it.
+double bytesPerLeaf(std::span<const Attribute> attributes);
 /// Whether its values follow from a plan of the motion where there is one.
 bool usesTiming(Attribute attribute);
 

@@ -1,5 +1,6 @@
 #include "voxelize/grid/interior_distance.h"
 
+#include "base/memory.h"
 #include "base/parallel_for.h"
 
 #include <openvdb/tools/FastSweeping.h>
@@ -69,6 +70,8 @@ void stoppable(const std::function<void()>& work) {
 }  // namespace
 
 void sweepInterior(openvdb::FloatGrid& grid) {
+    requireMemory(kSweepBytesPerLeaf * grid.tree().leafCount(), "a sweep of the distances inside",
+                  "choose a larger voxel, or leave out --interior-distance");
     const float background = grid.background();
     Sweeping sweeping;
     if (sweeping.initSdf(StoppableGrid(grid, StopScope::current()), 0, true))

@@ -7,6 +7,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace stratum::voxelize {
 
 bool choosesVoxels(const PrintOptions& options) {
@@ -36,8 +38,12 @@ std::string describeSelection(const PrintOptions& options) {
 }
 
 Lattice latticeFor(const PrintOptions& options, const gcode::Toolpath& toolpath,
-                   const std::vector<std::uint32_t>& selection, const Bounds& bounds, Interior interior, double pixel) {
+                   const std::vector<std::uint32_t>& selection, const Bounds& bounds, Interior interior, double pixel,
+                   double bytes_per_leaf) {
     LatticeRequest request = options.lattice;
+    // A culled print keeps less than half of its leaves, unless it is hollow.
+    request.bytes_per_leaf =
+        interior == Interior::cull ? std::max(0.5 * bytes_per_leaf, kBytesPerLeaf) : bytes_per_leaf;
     request.pixel = pixel;
     std::string why;
     if (options.voxel_auto || options.tolerance || !options.memory_budget.empty()) {
@@ -52,7 +58,8 @@ Lattice latticeFor(const PrintOptions& options, const gcode::Toolpath& toolpath,
                               *options.tolerance);
         } else {
             const double budget = parseSize(options.memory_budget);
-            request.voxels_per_layer = voxelsPerLayerWithin(budget, toolpath, selection, coarse, interior);
+            request.voxels_per_layer =
+                voxelsPerLayerWithin(budget, toolpath, selection, coarse, interior, bytes_per_leaf);
             why = fmt::format("; the finest within {}", humanBytes(budget));
         }
     }

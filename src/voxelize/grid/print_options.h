@@ -40,10 +40,11 @@ Selection selectionOf(const PrintOptions& options, const gcode::Toolpath& toolpa
 std::string describeSelection(const PrintOptions& options);
 
 /// The lattice: tolerance and memory_budget determine the voxels a layer, and with voxel_auto so does `pixel`, the
-/// smallest size of a pixel on the print (mm; 0: not known); otherwise chooseLattice() decides, which is told it. For
-/// requests of fewer than two voxels a layer, its warning has the share of the beads that is lost. Throws UsageError.
+/// smallest size of a pixel on the print (mm; 0: not known); otherwise chooseLattice() decides, which is told it and
+/// `bytes_per_leaf` (VoxelizeOptions). For requests of fewer than two voxels a layer, its warning has the share of the
+/// beads that is lost. Throws UsageError.
 Lattice latticeFor(const PrintOptions& options, const gcode::Toolpath& toolpath,
                    const std::vector<std::uint32_t>& selection, const Bounds& bounds, Interior interior,
-                   double pixel = 0);
+                   double pixel = 0, double bytes_per_leaf = kBytesPerLeaf);
 
 }  // namespace stratum::voxelize

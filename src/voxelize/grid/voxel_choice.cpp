@@ -1,6 +1,7 @@
 #include "voxelize/grid/voxel_choice.h"
 
 #include "base/error.h"
+#include "base/human_text.h"
 #include "base/text.h"
 #include "voxelize/beads/estimate.h"
 #include "voxelize/beads/layer_stack.h"
@@ -22,8 +23,8 @@ constexpr int kMostVoxelsPerLayer = 64;
 constexpr int kMostWithinBudget = 16;
 // The upper nodes of however small a grid: a part across the origin has eight, of 32^3 pointers each.
 constexpr double kBytesOfTree = 2.2e6;
-// Masks that the flood keeps for a leaf while it runs, and leaves that it visits without keeping them.
-constexpr double kFloodFactor = 1.35;
+// Of a leaf: masks that the flood keeps for a leaf while it runs, and leaves that it visits without keeping them.
+constexpr double kFloodShare = 0.35;
 // Voxels a layer of the culled build that finer ones are scaled from.
 constexpr int kScaledFrom = 2;
 
@@ -48,7 +49,7 @@ int voxelsPerLayerForPixel(double layer_height, double pixel) {
 }
 
 double estimateBytes(const gcode::Toolpath& toolpath, std::span<const std::uint32_t> selection, const Lattice& lattice,
-                     Interior interior) {
+                     Interior interior, double bytes_per_leaf) {
     if (interior == Interior::cull) {
         Lattice coarse = lattice;
         coarse.voxel_size = std::max(lattice.voxel_size, lattice.layer_height / kScaledFrom);
@@ -56,7 +57,7 @@ double estimateBytes(const gcode::Toolpath& toolpath, std::span<const std::uint3
         options.interior = Interior::cull;
         const auto leaves = static_cast<double>(voxelize(toolpath, selection, coarse, options)->tree().leafCount());
         const double finer = coarse.voxel_size / lattice.voxel_size;
-        return leaves * finer * finer * kBytesPerLeaf * kFloodFactor + kBytesOfTree;
+        return leaves * finer * finer * (bytes_per_leaf + kFloodShare * kBytesPerLeaf) + kBytesOfTree;
     }
     const LayerStack stack = stackLayers(toolpath, selection);
     const PrintColumns columns(toolpath, stack, lattice);
@@ -64,20 +65,20 @@ double estimateBytes(const gcode::Toolpath& toolpath, std::span<const std::uint3
     for (std::size_t c = 0; c < columns.size(); ++c)
         for (const LeafRange& range : columns.bounds(c))
             leaves += static_cast<std::size_t>(range.second - range.first) + 1;
-    return static_cast<double>(leaves) * kBytesPerLeaf + static_cast<double>(columns.bins().bytes()) + kBytesOfTree;
+    return static_cast<double>(leaves) * bytes_per_leaf + static_cast<double>(columns.bins().bytes()) + kBytesOfTree;
 }
 
 int voxelsPerLayerWithin(double budget, const gcode::Toolpath& toolpath, std::span<const std::uint32_t> selection,
-                         const Lattice& any_size, Interior interior) {
+                         const Lattice& any_size, Interior interior, double bytes_per_leaf) {
     static_assert(kScaledFrom == kFewestVoxelsPerLayer);
     Lattice lattice = any_size;
     lattice.voxel_size = lattice.layer_height / kFewestVoxelsPerLayer;
-    const double coarsest = estimateBytes(toolpath, selection, lattice, interior);
+    const double coarsest = estimateBytes(toolpath, selection, lattice, interior, bytes_per_leaf);
     if (coarsest > budget)
         throw UsageError(fmt::format(
-            "--memory-budget: {} voxels a layer of {:g} mm take about {:.3g} MB already, and fewer lose parts of the "
-            "print; give that much, fewer layers or features{}",
-            kFewestVoxelsPerLayer, lattice.layer_height, coarsest * 1e-6,
+            "--memory-budget: {} voxels a layer of {:g} mm take about {} already, and fewer lose parts of the "
+            "print; give that much, fewer layers, features or grids{}",
+            kFewestVoxelsPerLayer, lattice.layer_height, humanBytes(coarsest),
             interior == Interior::keep ? ", or --interior cull" : ""));
     int best = kFewestVoxelsPerLayer;
     for (int count = best + 1; count <= kMostWithinBudget; ++count) {
@@ -87,7 +88,9 @@ int voxelsPerLayerWithin(double budget, const gcode::Toolpath& toolpath, std::sp
         const double least = coarsest * finer * finer;
         if (least > (interior == Interior::cull ? 1 : 1.5) * budget) break;
         lattice.voxel_size = lattice.layer_height / count;
-        if (interior == Interior::keep && estimateBytes(toolpath, selection, lattice, interior) > budget) break;
+        if (interior == Interior::keep &&
+            estimateBytes(toolpath, selection, lattice, interior, bytes_per_leaf) > budget)
+            break;
         best = count;
     }
     return best;

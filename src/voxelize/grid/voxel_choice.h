@@ -34,15 +34,16 @@ constexpr int kFewestForPixels = 2;  ///< one voxel a layer can't represent a la
 constexpr int kMostForPixels = 16;
 constexpr double kVoxelsPerPixel = 2;
 
-/// Bytes of a grid and of its construction. `keep`: counted from the z extents of the beads of every leaf column, a few
-/// per cent too many. `cull`: measured by a culled build at no more than two voxels a layer, scaled like a surface.
+/// Bytes of a grid, of what is made beside it (VoxelizeOptions::bytes_per_leaf) and of its construction. `keep`:
+/// counted from the z extents of the beads of every leaf column, a few per cent too many. `cull`: measured by a culled
+/// build at no more than two voxels a layer, scaled like a surface.
 double estimateBytes(const gcode::Toolpath& toolpath, std::span<const std::uint32_t> selection, const Lattice& lattice,
-                     Interior interior);
+                     Interior interior, double bytes_per_leaf = kBytesPerLeaf);
 
 /// The most voxels a layer (kFewestVoxelsPerLayer to 16) whose estimate is within `budget` bytes. Throws UsageError,
 /// with the estimate for the fewest, if not even they fit.
 int voxelsPerLayerWithin(double budget, const gcode::Toolpath& toolpath, std::span<const std::uint32_t> selection,
-                         const Lattice& any_size, Interior interior);
+                         const Lattice& any_size, Interior interior, double bytes_per_leaf = kBytesPerLeaf);
 
 /// "4GB", "800 MB", "1.5g" -> bytes; powers of ten, or of 1024 with an i: "4GiB". Throws UsageError.
 double parseSize(std::string_view text);

@@ -37,16 +37,22 @@ std::size_t memoryLimit(const VoxelizeOptions& options) {
 // The estimate can be off by about this factor; culling builds only a fraction of it.
 double estimateMargin(Interior interior) { return interior == Interior::keep ? 3 : 30; }
 
+// Throws if `bytes` and what a factor of `margin` may be wrong with them are more than the limit.
+void refuseBeyond(double bytes, double margin, const Lattice& lattice, const VoxelizeOptions& options) {
+    const std::size_t limit = memoryLimit(options);
+    if (bytes <= margin * static_cast<double>(limit)) return;
+    requireMemory(
+        bytes, fmt::format("voxel size {:g} mm", lattice.voxel_size),
+        fmt::format("choose a larger voxel (half the layer height is {:g} mm), --memory-budget, fewer "
+                    "--grids, layers or features{}",
+                    lattice.layer_height / 2, options.interior == Interior::keep ? ", or --interior cull" : ""),
+        limit);
+}
+
 // Refuses clearly too large grids by arithmetic, before any list is made. The exact bound follows from the bins.
 LayerStack stackIfItFits(const gcode::Toolpath& toolpath, std::span<const std::uint32_t> selection,
                          const Lattice& lattice, const VoxelizeOptions& options, double estimate) {
-    const auto limit = static_cast<double>(memoryLimit(options));
-    if (options.in_memory && estimate > estimateMargin(options.interior) * limit)
-        throw UsageError(
-            fmt::format("voxel size {:g} mm needs about {:.3g} GB, {:.3g} GB are free; choose a larger voxel "
-                        "(half the layer height is {:g} mm), --memory-budget, fewer layers or features{}",
-                        lattice.voxel_size, estimate * 1e-9, limit * 1e-9, lattice.layer_height / 2,
-                        options.interior == Interior::keep ? ", or --interior cull" : ""));
+    refuseBeyond(estimate, estimateMargin(options.interior), lattice, options);
     return stackLayers(toolpath, selection);
 }
 
@@ -58,9 +64,9 @@ struct Voxelizer::State {
         : toolpath(the_toolpath),
           lattice(the_lattice),
           options(std::move(the_options)),
-          estimated_bytes(options.in_memory
+          estimated_bytes(options.bytes_per_leaf > 0
                               ? estimateActiveVoxels(toolpath, selection, lattice.voxel_size, lattice.half_width) *
-                                    kBytesPerActiveVoxel
+                                    kBytesPerActiveVoxel * (options.bytes_per_leaf / kBytesPerLeaf)
                               : 0),
           stack(stackIfItFits(toolpath, selection, lattice, options, estimated_bytes)),
           columns(toolpath, stack, lattice, options.placement.unit, LeafColumn::Kind::values, memoryLimit(options)),
@@ -98,18 +104,11 @@ struct Voxelizer::State {
 };
 
 void Voxelizer::State::refuseIfTooLarge() {
-    if (!options.in_memory) return;
+    if (!(options.bytes_per_leaf > 0)) return;
     // Culling builds a fraction that is unknown before the flood. Grids that clearly fit are not counted.
     if (options.interior == Interior::cull) return;
     if (estimated_bytes * estimateMargin(options.interior) * 2 < static_cast<double>(memoryLimit(options))) return;
-    const auto leaf_bound = static_cast<double>(bounds().leaves);
-    const double bytes = leaf_bound * kBytesPerLeaf;
-    const auto limit = static_cast<double>(memoryLimit(options));
-    if (bytes > limit)
-        throw UsageError(
-            fmt::format("voxel size {:g} mm needs up to {:.1f} GB ({:.3g} leaves), {:.1f} GB are free; choose a larger "
-                        "voxel, --memory-budget, fewer layers or features, or --interior cull",
-                        lattice.voxel_size, bytes * 1e-9, leaf_bound, limit * 1e-9));
+    refuseBeyond(static_cast<double>(bounds().leaves) * options.bytes_per_leaf, 1, lattice, options);
 }
 
 void Voxelizer::State::buildTouched(std::uint32_t end) {
@@ -216,8 +215,10 @@ CullForecast Voxelizer::forecastCull() const {
 
 std::vector<openvdb::GridBase::Ptr> Voxelizer::attributes(std::span<const Attribute> wanted) const {
     const State& s = *state_;
+    if (wanted.empty()) return {};
+    // OpenVDB's copies of a topology do not survive a failed allocation.
+    refuseBeyond((bytesPerLeaf(wanted) - kBytesPerLeaf) * s.grid->tree().leafCount(), 1, s.lattice, s.options);
     std::vector<openvdb::GridBase::Ptr> grids = makeAttributeGrids(s.toolpath, wanted, *s.grid);
-    if (wanted.empty()) return grids;
     const bool overfill = std::find(wanted.begin(), wanted.end(), Attribute::overfill) != wanted.end();
     const BeadAttributes values(s.toolpath, wanted,
                                 overfill ? overfillOfBeads(s.toolpath, s.stack) : std::vector<float>());

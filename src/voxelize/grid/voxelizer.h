@@ -2,6 +2,7 @@
 #pragma once
 
 #include "gcode/toolpath/toolpath.h"
+#include "voxelize/beads/estimate.h"
 #include "voxelize/beads/lattice.h"
 #include "voxelize/beads/placement.h"
 #include "voxelize/grid/attributes.h"
@@ -30,8 +31,8 @@ enum class Interior : std::uint8_t {
 struct VoxelizeOptions {
     Placement placement;
     Interior interior = Interior::keep;
-    /// Whether a grid will be built; stream() alone needs no memory for one.
-    bool in_memory = true;
+    /// Of memory for each leaf, of the grid and of what will be made beside it; stream() alone holds none: 0.
+    double bytes_per_leaf = kBytesPerLeaf;
     /// Refuse before building if the estimate is larger, bytes. 0: 90 % of what the machine has available.
     std::size_t memory_limit = 0;
     /// Called from time to time with the fraction done, 0..1, from any of the working threads, one call at a time.
@@ -86,7 +87,8 @@ public:
     /// Name, class, transform and background of the grid, without a voxel.
     openvdb::FloatGrid::Ptr emptyGrid() const;
 
-    /// Attribute grids over the active voxels of the current grid, in the given order. Progress restarts at 0.
+    /// Attribute grids over the active voxels of the current grid, in the given order. Progress restarts at 0. Throws
+    /// UsageError if memory is short.
     std::vector<openvdb::GridBase::Ptr> attributes(std::span<const Attribute> wanted) const;
 
     /// Counts what Interior::cull would keep of the current grid, which Interior::keep built. Reads existing leaves

@@ -255,8 +255,23 @@ TEST(Voxelizer, RefusesWhatDoesNotFitWithTheEstimate) {
         voxelize(toolpath, allBeads(toolpath), latticeOf(0.02), options);
         FAIL() << "expected a refusal";
     } catch (const UsageError& error) {
-        EXPECT_NE(std::string(error.what()).find("GB"), std::string::npos);
+        EXPECT_NE(std::string(error.what()).find("voxel size 0.02 mm needs about"), std::string::npos) << error.what();
+        EXPECT_NE(std::string(error.what()).find("2.1 MB are free"), std::string::npos) << error.what();
     }
+}
+
+// OpenVDB's copies of a topology do not survive a failed allocation.
+TEST(Voxelizer, RefusesAttributesThatDoNotFit) {
+    const gcode::Toolpath toolpath = smallPrint();
+    const auto beads = allBeads(toolpath);
+    const Lattice lattice = latticeOf(0.05);
+    VoxelizeOptions options;
+    options.interior = Interior::cull;  // whose leaves are not known before
+    options.memory_limit = voxelize(toolpath, beads, lattice, options)->tree().leafCount() * 10000;
+    Voxelizer voxelizer(toolpath, beads, lattice, options);
+    (void)voxelizer.printAll();
+    EXPECT_EQ(voxelizer.attributes(parseGrids("layer,color")).size(), 2U);
+    EXPECT_THROW((void)voxelizer.attributes(parseGrids("layer,color,time")), UsageError);
 }
 
 }  // namespace
