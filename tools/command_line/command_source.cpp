@@ -102,7 +102,7 @@ void CommandSource::fail(std::string_view name, std::string_view expected) const
 
 void CommandSource::refuse(std::string_view name, std::string_view expected) const {
     const CLI::Option* option = app_->get_option(called(name));
-    const bool flag = option->get_type_size_max() == 0;
+    const bool flag = option->get_expected_max() == 0;
     throw UsageError(fmt::format("{}{}: expected {}", called(name),
                                  flag ? "" : fmt::format(" {}", fmt::join(option->results(), " ")), expected));
 }
