@@ -319,6 +319,7 @@ void readPictureOptions(TraceCommand& o, const CLI::App& app) {
         // With objects only its name is used.
         o.inputs = {file.objects.empty() ? file.print : path.string()};
         o.objects = std::move(file.objects);
+        o.scene_file = path.string();
         o.scene_text = sha256Hex(InputFile(path).bytes());
         o.notes = std::move(file.notes);
         if (o.output.empty() && o.film.output.empty())

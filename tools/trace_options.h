@@ -40,7 +40,8 @@ struct TraceCommand : assemble::PictureRequest {
     std::vector<std::string> inputs, notes;
     std::string output, write_brdf, checkpoint;
     bool each = false;
-    std::string scene_text;  // hash of the scene file, or empty
+    std::string scene_file;  // or empty
+    std::string scene_text;  // its hash
     std::string said;        // the options that are given, for checkpoints
     bool linear = false;     // the output keeps linear values: an .exr. Set when its name is checked
     std::string turns;       // --turntable, as given

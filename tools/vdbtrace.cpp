@@ -104,6 +104,7 @@ bool makesAny(const tools::TraceCommand& o) {
 }
 
 void listFiles(tools::RunFiles& files, const tools::TraceCommand& o, const std::string& option) {
+    files.reads(o.scene_file);
     for (const std::string& input : o.inputs) files.reads(input);
     for (const std::string& file : tools::inputFilesOf(o)) files.reads(file);
     if (!o.film.output.empty()) return files.writes(o.film.output, "--film");

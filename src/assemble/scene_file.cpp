@@ -163,8 +163,14 @@ void readShapes(JsonSection& top, const std::filesystem::path& folder, const std
 }  // namespace
 
 bool isSceneFile(std::string_view text) {
-    const std::size_t first = text.find_first_not_of(" \t\r\n");
-    return first != std::string_view::npos && text[first] == '{';
+    if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);  // a byte order mark of Windows' editors
+    while (true) {
+        text.remove_prefix(std::min(text.find_first_not_of(" \t\r\n"), text.size()));
+        const std::string_view end = text.starts_with("//") ? "\n" : text.starts_with("/*") ? "*/" : "";
+        if (end.empty()) return text.starts_with('{');
+        const std::size_t stop = text.find(end, 2);
+        text.remove_prefix(stop == std::string_view::npos ? text.size() : stop + end.size());
+    }
 }
 
 SceneFile readSceneFile(const std::filesystem::path& path) {

@@ -70,9 +70,15 @@ bool isNumber(std::string_view text) {
     return !text.empty() && text.find_first_not_of("0123456789") == std::string_view::npos;
 }
 
+// What the names of the parts of this destination begin with. A long name is cut, since names have 255 bytes at most.
+std::string partsBegin(const std::filesystem::path& destination) {
+    constexpr std::size_t kMost = 220;
+    return fmt::format(".{}.", destination.filename().string().substr(0, kMost));
+}
+
 // Removes files that killed processes with this destination have left: files without a lock.
 void sweep(const std::filesystem::path& destination) {
-    const std::string begin = fmt::format(".{}.", destination.filename().string());
+    const std::string begin = partsBegin(destination);
     constexpr std::string_view kEnd = ".part";
     std::error_code error;
     for (std::filesystem::directory_iterator i(folderOf(destination), error), end; !error && i != end;
@@ -189,7 +195,7 @@ AtomicFile::AtomicFile(std::filesystem::path destination, Making making) : desti
         throw OutputError(fmt::format("{}: is a folder; give the name of a file", destination_.string()));
     Replacement::check(destination_);
     sweep(target_);
-    part_ = folder / fmt::format(".{}.{}.part", target_.filename().string(), ::getpid());
+    part_ = folder / fmt::format("{}{}.part", partsBegin(target_), ::getpid());
     if (making == Making::named || !openUnnamed()) openNamed();
 }
 

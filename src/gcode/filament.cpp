@@ -100,15 +100,26 @@ void chooseFilament(std::optional<double> nozzle, Toolpath& toolpath, WarningLog
     constexpr double kNarrowest = 0.33;   // mm, of lines of 1.75 mm filament
     constexpr std::size_t kEnough = 100;  // lines, for a choice
     constexpr std::size_t kFewest = 4;    // for a remark
-    std::vector<float> widths;
+    struct Line {
+        float width = 0;
+        double length = 0;
+    };
+    std::vector<Line> lines_of_print;
+    double length = 0;
     for (const Bead& bead : toolpath.beads) {
         const Run& run = toolpath.runOf(bead);
-        if (isPlainLine(run)) widths.push_back(bead.width / run.height);
+        if (!isPlainLine(run)) continue;
+        lines_of_print.push_back({bead.width / run.height, beadLength(toolpath, bead)});
+        length += lines_of_print.back().length;
     }
-    if (widths.size() < kFewest) return;
-    const auto middle = widths.begin() + static_cast<std::ptrdiff_t>(widths.size() / 2);
-    std::nth_element(widths.begin(), middle, widths.end());
-    const double width = static_cast<double>(*middle);
+    if (lines_of_print.size() < kFewest) return;
+    // By length: thousands of short pieces fill gaps that are narrower than a line.
+    std::sort(lines_of_print.begin(), lines_of_print.end(),
+              [](const Line& a, const Line& b) { return a.width < b.width; });
+    double shorter = 0;
+    const auto middle = std::find_if(lines_of_print.begin(), lines_of_print.end() - 1,
+                                     [&](const Line& line) { return (shorter += line.length) >= 0.5 * length; });
+    const auto width = static_cast<double>(middle->width);
     const double scale = nozzle.value_or(kUsualNozzle) / kUsualNozzle;
     if (!(width > 0) || width >= kNarrowest * scale) return;
     const double ratio = areaOf(kThick) / areaOf(toolpath.filament_diameter);
@@ -117,7 +128,7 @@ void chooseFilament(std::optional<double> nozzle, Toolpath& toolpath, WarningLog
         "wide "
         "as a nozzle of {:g} mm do",
         toolpath.filament_diameter, width / (kUsualNozzle * scale), kUsualNozzle * scale);
-    if (width > kWidestThin * scale || widths.size() < kEnough)
+    if (width > kWidestThin * scale || lines_of_print.size() < kEnough)
         return warnings.add(fmt::format("{}; if it is {:g} mm, say so (--filament-diameter {:g}), for {:.2f} of it",
                                         lines, kThick, kThick, ratio * width / (kUsualNozzle * scale)),
                             1);

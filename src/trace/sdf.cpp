@@ -160,8 +160,9 @@ public:
     Box bounds() const override {
         Box box = parts_.front()->bounds();
         if (sign_ < 0) return box;
-        for (const SdfPtr& part : parts_) {
-            const Box own = part->bounds();
+        // Each part once: nested intersections would double the work at each level.
+        for (std::size_t n = 1; n < parts_.size(); ++n) {
+            const Box own = parts_[n]->bounds();
             box.min = glm::max(box.min, own.min);
             box.max = glm::min(box.max, own.max);
         }

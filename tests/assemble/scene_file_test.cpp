@@ -94,6 +94,9 @@ TEST(SceneFile, SaysWhatIsWrong) {
 
 TEST(SceneFile, IsToldByItsBrace) {
     EXPECT_TRUE(assemble::isSceneFile("\n {"));
+    EXPECT_TRUE(assemble::isSceneFile("\xef\xbb\xbf// a lamp\n/* of glass */ {"));
+    EXPECT_FALSE(assemble::isSceneFile("// no end"));
+    EXPECT_FALSE(assemble::isSceneFile("/* no end"));
     EXPECT_FALSE(assemble::isSceneFile(" BDV"));
     EXPECT_FALSE(assemble::isSceneFile(""));
 }

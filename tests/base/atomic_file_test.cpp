@@ -45,6 +45,18 @@ TEST_P(EachMaking, CommitReplacesAndLeavesNothingBeside) {
     EXPECT_EQ(filesIn(folder.path()), 1U);
 }
 
+// The part's own name is cut; what killed runs left is found all the same.
+TEST_P(EachMaking, NamesOf255BytesCanBeWritten) {
+    const test::ScratchFolder folder;
+    const std::string name(255, 'n');
+    std::ofstream(folder / ("." + name.substr(0, 220) + ".99999.part")) << "left";
+    AtomicFile file(folder / name, GetParam());
+    std::ofstream(file.temporary()) << "new";
+    file.commit();
+    EXPECT_EQ(slurp(folder / name), "new");
+    EXPECT_EQ(filesIn(folder.path()), 1U);
+}
+
 TEST_P(EachMaking, ModesAreThoseOfAnyNewFile) {
     const test::ScratchFolder folder;
     std::ofstream(folder / "plain") << "x";

@@ -142,6 +142,7 @@ refused([VDBTRACE, "t.vdb", *SMALL, "-o", "p.png", "--stats", "p.png"], 2, "diff
 refused([VDBTRACE, "t.vdb", *SMALL, "-o", "p.exr", "--write-brdf", "p.exr"], 2, "different names")
 refused([VDBTRACE, "t.vdb", *SMALL, "-o", "p.png", "--turntable", "2", "--stats", "p_001.png"], 2, "different names")
 refused([VDBTRACE, "scene.json", "--stats", "t.vdb"], 2, "--stats t.vdb: is an input")
+refused([VDBTRACE, "scene.json", "--stats", "scene.json", "--force"], 2, "--stats scene.json: is an input")
 shutil.copy(gcode("tile.gcode"), path("s_050pct.vdb"))  # G-code by its content
 refused([GCODE2VDB, "s_050pct.vdb", "-o", "s.vdb", *COARSE, "--snapshots", "50%"], 2, "s_050pct.vdb", "is an input")
 refused([VDBSTUDY, "memory", "t.gcode", "-o", "studies", "--stats", "t.gcode"], 2, "--stats t.gcode: is an input")

@@ -49,6 +49,10 @@ TEST(Sdf, OperationsAreThoseOfSets) {
     EXPECT_FALSE(inside(sdfSubtraction({a, b}), in_b));
     EXPECT_EQ(sdfUnion({a, b})->bounds().max, glm::dvec3(2, 1, 1));
     EXPECT_EQ(sdfIntersection({a, b})->bounds().min, glm::dvec3(0, -1, -1));
+    // Each part is asked once: time does not double with depth.
+    SdfPtr nested = a;
+    for (int depth = 0; depth < 60; ++depth) nested = sdfIntersection({nested});
+    EXPECT_EQ(nested->bounds().min, a->bounds().min);
 }
 
 TEST(Sdf, NoStepIsTooLong) {

@@ -90,6 +90,10 @@ Machine::Machine(const Settings& settings, const ReadOptions& options, std::stri
 void Machine::refuse(std::string_view what) const { throw InputError(fmt::format("{}:{}: {}", name_, line_, what)); }
 
 void Machine::heed(const Tag& tag, const Line& line) {
+    // Between ;TYPE: lines, verbose moves name less: "perimeter" for an outer wall, too.
+    const bool behind_move = tag.bare && line.count > 0;
+    if (behind_move && types_stated_) return;
+    if (tag.kind == Tag::Kind::feature && !tag.bare && tag.feature != Feature::custom) types_stated_ = true;
     if (tag.kind == Tag::Kind::object_start) objects_by_comment_ = true;
     if (tag.kind == Tag::Kind::filament_loaded) loaded();
     flushing_ = flushing_ ? tag.kind != Tag::Kind::flush_stop : tag.kind == Tag::Kind::flush_start;
@@ -440,8 +444,9 @@ void Machine::labelObject(const Command& command) {
 }
 
 bool Machine::filamentKnown() const {
-    return volumetric_ || !filament_override_.empty() || !m200_diameters_.empty() ||
-           !settings_.filament_diameters.empty();
+    // A motor that is switched counts no filament.
+    return settings_.extrusion.drive == ExtrusionScan::Drive::switched || volumetric_ || !filament_override_.empty() ||
+           !m200_diameters_.empty() || !settings_.filament_diameters.empty();
 }
 
 std::string Machine::extrusionRule() const {

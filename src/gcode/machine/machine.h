@@ -209,7 +209,8 @@ private:
     const bool simulates_flow_;
     std::optional<Belt> belt_;
     bool flushing_ = false;
-    double flushed_ = 0;  // mm
+    bool types_stated_ = false;  // comments of their own name features
+    double flushed_ = 0;         // mm
     ExtraAxes extra_axes_;
     Carriages carriages_;
     std::map<std::string, Saved, std::less<>> saved_;

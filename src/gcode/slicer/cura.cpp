@@ -100,6 +100,8 @@ std::vector<CuraSetting> CuraProfile::settings() {
         const std::string part = takeString(text);
         if (part == "extruder_quality")
             of_extruders = true;
+        else if (part == "global_quality")
+            of_extruders = false;  // the keys come in either order
         else if (part.find('=') != std::string::npos && extruder < kMostExtruders)
             addAll(part, '\n', of_extruders ? std::optional(extruder++) : std::nullopt, settings_);
     }

@@ -129,7 +129,7 @@ Tag ofMoveComment(std::string_view text) {
     if (const auto count = text.find(": "); count != std::string_view::npos)
         text = text.substr(0, std::min(count + 1, text.find(" path,")));
     const auto feature = featureOfMoveComment(text);
-    return feature ? Tag{.kind = Tag::Kind::feature, .feature = *feature, .text = text} : Tag{};
+    return feature ? Tag{.kind = Tag::Kind::feature, .feature = *feature, .text = text, .bare = true} : Tag{};
 }
 
 Tag ofBareName(std::string_view text) {
@@ -215,7 +215,10 @@ Tag parseTag(std::string_view comment) {
     }
     constexpr std::size_t kLongestBareName = 26;
     const bool may = text.size() <= kLongestBareName && text.front() >= 'a' && text.front() <= 'z';
-    return may ? ofBareName(text) : Tag{};
+    if (!may) return {};
+    Tag tag = ofBareName(text);
+    tag.bare = tag.kind == Tag::Kind::feature;
+    return tag;
 }
 
 }  // namespace stratum::gcode

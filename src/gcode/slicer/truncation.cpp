@@ -14,7 +14,7 @@ constexpr std::size_t kTrailerReach = std::size_t{1} << 18;  // thumbnails and C
 
 struct Trailer {
     std::string_view slicer;
-    std::array<std::string_view, 4> any_of;  // texts in the file; one of them is enough; the rest is empty
+    std::array<std::string_view, 6> any_of;  // texts in the file; one of them is enough; the rest is empty
 };
 
 constexpr std::array kTrailers{
@@ -26,7 +26,9 @@ constexpr std::array kTrailers{
     Trailer{"Flash Studio", {"; EXECUTABLE_BLOCK_END", "; CONFIG_BLOCK_END", "; filament used ["}},
     Trailer{"Slic3r", {"; filament used = ", "; filament used [", "; top_solid_layers = "}},
     Trailer{"Cura 15", {}},  // its first versions wrote nothing there
-    Trailer{"Cura", {";End of Gcode", ";SETTING_3 ", ";End of gcode", ";CURA_PROFILE_STRING:"}},
+    Trailer{
+        "Cura",
+        {";End of Gcode", ";SETTING_3 ", ";End of gcode", ";CURA_PROFILE_STRING:", "; End of Gcode", "; SETTING_3 "}},
     Trailer{"Simplify3D", {"; Build Summary", ";   Build time: ", ";   Plastic volume: "}},
     Trailer{"ideaMaker", {";Material#1 Used", ";Print Time: ", ";Material#2 Used"}},
     Trailer{"Kiri:Moto", {"; --- filament used", "; --- print time", ";; --- filament used"}},

@@ -64,6 +64,9 @@ TEST(Settings, CurasLimitsAreAGuessWhereNothingIsStated) {
     EXPECT_TRUE(guessed(";SETTING_3 {\"global_quality\": \"[general]\\ndefinition = custom\\n\"}\n"));
     EXPECT_FALSE(guessed(";SETTING_3 {\"global_quality\": \"[general]\\ndefinition = creality_ender3\\n\"}\n"));
     EXPECT_FALSE(
+        guessed(";SETTING_3 {\"extruder_quality\": [\"[general]\\nversion = 4\\n\"], \"global_quality\": "
+                "\"[general]\\ndefinition = creality_ender3\\n\"}\n"));
+    EXPECT_FALSE(
         guessed(";SETTING_3 {\"global_quality\": \"[general]\\n[values]\\nmachine_max_acceleration_x = 50\\n\"}\n"));
 }
 
