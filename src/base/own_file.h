@@ -10,7 +10,8 @@ namespace stratum {
 inline constexpr const char* kProgramMark = "Stratum " STRATUM_VERSION;
 
 /// Whether the file has such a mark, of any version and tool ("Stratum 1.0", "gcode2vdb 1.0", ..), in its first or last
-/// mebibyte, or is a table of beads as --dump-toolpath writes it. False if it can't be read.
+/// mebibyte, in a text where these programs write it ("by Stratum 1.0"), or is a table of beads as --dump-toolpath
+/// writes it. False if it can't be read.
 bool isOwnFile(const std::filesystem::path& path);
 
 }  // namespace stratum

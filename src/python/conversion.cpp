@@ -1,7 +1,7 @@
 #include "python/conversion.h"
 
 #include "assemble/print/read_print_options.h"
-
+#include "base/error.h"
 #include "export/vdb_stream.h"
 #include "voxelize/grid/interior_distance.h"
 

@@ -17,11 +17,15 @@ TEST(OwnFile, HasANameAndAVersion) {
         return isOwnFile(folder / "file");
     };
     EXPECT_TRUE(own(std::string("comment by ") + kProgramMark));
-    EXPECT_TRUE(own("<p>stratum 0.9.1</p>"));
+    EXPECT_TRUE(own("<p class='soft'>stratum 0.9.1</p>"));
     EXPECT_TRUE(own(std::string("Software\0vdbtrace 1.2", 21)));
     EXPECT_TRUE(own("{\"program\": \"gcode2vdb 2.0\"}"));
     EXPECT_TRUE(own("line,layer,feature,tool,object,x0,y0,z0,x1\n1,2"));
     EXPECT_FALSE(own("the Stratum of rock"));
+    // Somebody else's notes, G-code and scene.
+    EXPECT_FALSE(own("my notes: made with gcode2vdb 0.2.0, do not lose"));
+    EXPECT_FALSE(own("; filament_settings_id = \"Stratum 3D PLA\"\nG1 X1\n"));
+    EXPECT_FALSE(own("{ /* checked with vdbtrace 0.2.0 */ \"print\": \"t.vdb\" }"));
     EXPECT_FALSE(own("written by gcode2vdb "));
     EXPECT_FALSE(own("solid by hand"));
     EXPECT_FALSE(own("layer,line\n"));

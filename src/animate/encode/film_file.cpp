@@ -4,7 +4,6 @@
 #include "animate/encode/ffmpeg_writer.h"
 #include "base/atomic_file.h"
 #include "base/error.h"
-#include "base/human_text.h"
 #include "base/memory.h"
 #include "base/text.h"
 
