@@ -132,7 +132,7 @@ public:
         const bool print = options_.prints.toolpath || !isVdbFile(object.vdb);
         if (print && !object.grid.empty())
             throw UsageError(
-                fmt::format("{}: is G-code, which has no grid {}; leave --grid out", object.vdb, object.grid));
+                fmt::format("{}: is G-code, which has no grid {}; leave the grid out", object.vdb, object.grid));
         known = &keep(print ? shapeOfPrint(object, options_, needs_, warnings_)
                             : shapeOfLevelSet(object, options_, needs_, warnings_),
                       result);

@@ -1,5 +1,6 @@
 #include "base/atomic_file.h"
 
+#include "base/checksum.h"
 #include "base/error.h"
 #include "base/own_file.h"
 
@@ -70,10 +71,13 @@ bool isNumber(std::string_view text) {
     return !text.empty() && text.find_first_not_of("0123456789") == std::string_view::npos;
 }
 
-// What the names of the parts of this destination begin with. A long name is cut, since names have 255 bytes at most.
+// What the names of the parts of this destination begin with. Names have 255 bytes at most: the end of a long one,
+// where numbered pictures differ, is a checksum.
 std::string partsBegin(const std::filesystem::path& destination) {
     constexpr std::size_t kMost = 220;
-    return fmt::format(".{}.", destination.filename().string().substr(0, kMost));
+    const std::string name = destination.filename().string();
+    if (name.size() <= kMost) return fmt::format(".{}.", name);
+    return fmt::format(".{}.{:08x}.", name.substr(0, kMost), checksumOf(name));
 }
 
 // Removes files that killed processes with this destination have left: files without a lock.

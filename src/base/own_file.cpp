@@ -22,9 +22,8 @@ bool beginsWithVersion(std::string_view text) {
 
 // What stands before the mark in the texts that these programs write. Other people's texts may name them, too.
 bool introduces(std::string_view before) {
-    constexpr std::array<std::string_view, 9> kWords = {
-        "by ", "\"program\": \"", "\"program\":\"", "\"generator\":\"", "\"Application\">", "'soft'>", "UTC, ", ",",
-        "\n"};
+    constexpr std::array<std::string_view, 8> kWords = {
+        "by ", "\"program\": \"", "\"program\":\"", "\"generator\":\"", ">", "UTC, ", ",", "\n"};
     return std::any_of(kWords.begin(), kWords.end(),
                        [before](std::string_view word) { return before.ends_with(word); });
 }

@@ -1,9 +1,11 @@
 #include "base/atomic_file.h"
 
+#include "base/checksum.h"
 #include "base/error.h"
 #include "scratch_folder.h"
 
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <sys/file.h>
 #include <sys/stat.h>
@@ -45,16 +47,22 @@ TEST_P(EachMaking, CommitReplacesAndLeavesNothingBeside) {
     EXPECT_EQ(filesIn(folder.path()), 1U);
 }
 
-// The part's own name is cut; what killed runs left is found all the same.
+// The part's own name is cut; what killed runs left is found all the same, and names that differ at their ends alone
+// have parts of their own.
 TEST_P(EachMaking, NamesOf255BytesCanBeWritten) {
     const test::ScratchFolder folder;
     const std::string name(255, 'n');
-    std::ofstream(folder / ("." + name.substr(0, 220) + ".99999.part")) << "left";
+    const std::string other = name.substr(1) + "o";
+    std::ofstream(folder / fmt::format(".{}.{:08x}.99999.part", name.substr(0, 220), checksumOf(name))) << "left";
     AtomicFile file(folder / name, GetParam());
+    AtomicFile second(folder / other, GetParam());
     std::ofstream(file.temporary()) << "new";
+    std::ofstream(second.temporary()) << "another";
     file.commit();
+    second.commit();
     EXPECT_EQ(slurp(folder / name), "new");
-    EXPECT_EQ(filesIn(folder.path()), 1U);
+    EXPECT_EQ(slurp(folder / other), "another");
+    EXPECT_EQ(filesIn(folder.path()), 2U);
 }
 
 TEST_P(EachMaking, ModesAreThoseOfAnyNewFile) {

@@ -17,7 +17,7 @@ TEST(OwnFile, HasANameAndAVersion) {
         return isOwnFile(folder / "file");
     };
     EXPECT_TRUE(own(std::string("comment by ") + kProgramMark));
-    EXPECT_TRUE(own("<p class='soft'>stratum 0.9.1</p>"));
+    EXPECT_TRUE(own("<p>stratum 0.9.1</p>"));
     EXPECT_TRUE(own(std::string("Software\0vdbtrace 1.2", 21)));
     EXPECT_TRUE(own("{\"program\": \"gcode2vdb 2.0\"}"));
     EXPECT_TRUE(own("line,layer,feature,tool,object,x0,y0,z0,x1\n1,2"));

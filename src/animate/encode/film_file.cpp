@@ -42,7 +42,7 @@ void requireFilm(const std::filesystem::path& path, const FilmFormat& format) {
     if (kind != FilmKind::gif) return;
     // The palette is of all frames, which ffmpeg keeps until it has seen the last one.
     const double bytes = 3.0 * format.width * format.height * static_cast<double>(format.frames);
-    requireMemory(bytes, fmt::format("--film {}: ffmpeg keeps all frames for its palette, which", path.string()),
+    requireMemory(bytes, fmt::format("--film {}: ffmpeg must keep all frames for its palette, which", path.string()),
                   "make a .mp4, or less --seconds, --fps or --size");
 }
 

@@ -45,7 +45,7 @@ TEST(FilmFile, RefusesWhatItCanNotBe) {
     mentions("--size 64x48", complaint("a.webm", formatOf(64, 47, 9, 30)));
     mentions("1 to 50", complaint("a.gif", formatOf(64, 48, 9, 60)));
     mentions("1 to 240", complaint("a.mp4", formatOf(64, 48, 9, 241)));
-    mentions("ffmpeg keeps all frames for its palette", complaint("a.gif", formatOf(30000, 30000, 100000, 50)));
+    mentions("must keep all frames", complaint("a.gif", formatOf(30000, 30000, 100000, 50)));
     mentions("standard output", complaint("-.mp4", formatOf(64, 48, 9, 30)));
     EXPECT_EQ(complaint("a.png", formatOf(63, 47, 9, 240)), "none");
     EXPECT_EQ(complaint("a.gif", formatOf(63, 47, 9, 50)), "none");

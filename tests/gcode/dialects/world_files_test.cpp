@@ -224,41 +224,37 @@ TEST(WorldFiles, APrintThatRisesUnderOneMarkHasLayers) {
     EXPECT_EQ(readProgram("M83\n;LAYER:0\nG1 Z1\nG1 X20 E1\nG1 Z2\nG1 X0 E1\n").layer_count, 1U);
 }
 
+// Of each bead.
+std::vector<Feature> featuresOf(const std::string& text) {
+    std::vector<Feature> found;
+    const Toolpath toolpath = readProgram(text);
+    for (const Bead& bead : toolpath.beads) found.push_back(toolpath.runOf(bead).feature);
+    return found;
+}
+
 TEST(WorldFiles, FeaturesOfFurtherSlicers) {
-    const auto features = [](const std::string& text) {
-        std::vector<Feature> found;
-        const Toolpath toolpath = readProgram(text);
-        for (const Bead& bead : toolpath.beads) found.push_back(toolpath.runOf(bead).feature);
-        return found;
-    };
     // Skeinforge before <infill>: what follows a closed line.
-    EXPECT_EQ(features("M83\n(<layer> 0.15 )\n(<perimeter> outer )\nG1 Z.3\nG1 X10 E1\n(</perimeter>)\nG1 X0 E1\n"),
+    EXPECT_EQ(featuresOf("M83\n(<layer> 0.15 )\n(<perimeter> outer )\nG1 Z.3\nG1 X10 E1\n(</perimeter>)\nG1 X0 E1\n"),
               (std::vector{Feature::external_perimeter, Feature::infill}));
     // Miracle-Grue behind each move, and its first version before several.
-    EXPECT_EQ(features("; Miracle-Grue 9.9.9\nM83\nG1 Z.3\nG1 X10 E1; Outline\nG1 X0 E1; Inset\nG1 X5 E1; Spur\n"),
+    EXPECT_EQ(featuresOf("; Miracle-Grue 9.9.9\nM83\nG1 Z.3\nG1 X10 E1; Outline\nG1 X0 E1; Inset\nG1 X5 E1; Spur\n"),
               (std::vector{Feature::external_perimeter, Feature::perimeter, Feature::gap_fill}));
-    EXPECT_EQ(features("M83\nG1 Z.3\n(insets: 2)\nG1 X10 E1\n(infill path, length: 2)\nG1 X0 E1\n"),
+    EXPECT_EQ(featuresOf("M83\nG1 Z.3\n(insets: 2)\nG1 X10 E1\n(infill path, length: 2)\nG1 X0 E1\n"),
               (std::vector{Feature::perimeter, Feature::infill}));
     // REALvision, CreatWare, Kiri:Moto. Cura's ";BRIDGE" is no name.
     EXPECT_EQ(
-        features("M83\nG1 Z.3\n; Contour\nG1 X10 E1\n;TYPE:Inner perimeter\nG1 X0 E1\n; feature shells\nG1 X5 "
-                 "E1\n;TYPE:SKIN\n;BRIDGE\nG1 X10 E1\n"),
+        featuresOf("M83\nG1 Z.3\n; Contour\nG1 X10 E1\n;TYPE:Inner perimeter\nG1 X0 E1\n; feature shells\nG1 X5 "
+                   "E1\n;TYPE:SKIN\n;BRIDGE\nG1 X10 E1\n"),
         (std::vector{Feature::external_perimeter, Feature::perimeter, Feature::perimeter, Feature::solid_infill}));
 }
 
 // gcode_comments = 1: behind each move stands less than in the ;TYPE: before it.
 TEST(WorldFiles, VerboseMovesDoNotHideTypes) {
-    const auto features = [](const std::string& text) {
-        std::vector<Feature> found;
-        const Toolpath toolpath = readProgram(text);
-        for (const Bead& bead : toolpath.beads) found.push_back(toolpath.runOf(bead).feature);
-        return found;
-    };
-    EXPECT_EQ(features("M83\n;TYPE:External perimeter\nG1 Z.2\nG1 X10 E1 ; perimeter\n;TYPE:Top solid infill\nG1 X0 "
-                       "E1 ; infill\n"),
+    EXPECT_EQ(featuresOf("M83\n;TYPE:External perimeter\nG1 Z.2\nG1 X10 E1 ; perimeter\n;TYPE:Top solid infill\nG1 X0 "
+                         "E1 ; infill\n"),
               (std::vector{Feature::external_perimeter, Feature::top_infill}));
     // Before there were types, and behind one of the start program's alone, moves name them.
-    EXPECT_EQ(features("M83\n;TYPE:Custom\nG1 Z.2\nG1 X10 E1 ; perimeter\nG1 X0 E1 ; infill\n"),
+    EXPECT_EQ(featuresOf("M83\n;TYPE:Custom\nG1 Z.2\nG1 X10 E1 ; perimeter\nG1 X0 E1 ; infill\n"),
               (std::vector{Feature::perimeter, Feature::infill}));
 }
 
