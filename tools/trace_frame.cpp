@@ -55,6 +55,8 @@ Json skippedBy(const TraceCommand& o, const assemble::TracedObjects& objects, co
         skip("light and material", "the integrator does not shade", "shadow and bounce rays");
     if (o.render.integrator.exact_translucency && scene.anyTranslucent())
         skip("radiance cache", "--exact-translucency", "the paths that fill it");
+    else if (shade::maxComponent(scene.ambient) > 0.0f && scene.anyTranslucent())
+        skip("radiance cache", "ambient light, which it can't hold", "the paths that fill it");
     if (!scene.smooth_normals)
         skip("smooth normals", "not asked for", "keeping the level set besides its bricks, 56 samples a hit");
     return skipped;

@@ -7,7 +7,8 @@ wavelengths), in its text format. Nothing here was measured on a filament.
   interface  Fresnel reflectance of the index of refraction, GGX facets of roughness alpha with height-correlated
              masking (Walter et al., EGSR 2007; Heitz, JCGT 2014).
   body       Lambert below the interface: light passes it twice and is partly reflected back inside (Saunderson, JOSA
-             1942): rho T(i) T(o) / (1 - Ri rho), with Ri the diffuse reflectance from inside.
+             1942): rho T(i) T(o) / (1 - Ri rho). T is what the rough interface does not reflect of a direction (that of
+             a smooth one would be too little at grazing angles), Ri the diffuse reflectance from inside.
   silk       gloss additives are modelled as a second, broader, coloured lobe of flakes below the interface.
 
 Indices of refraction at 589 nm: PLA 1.465 (Hutchinson et al., "Optical properties of polylactides", J. Polym. Environ.
@@ -56,12 +57,6 @@ def fresnel(cosine, eta):
     return 0.5 * (a * a + b * b)
 
 
-def inner_reflectance(eta):
-    """Diffuse light that meets the interface from inside: the share that is sent back."""
-    n = 4000
-    return sum(fresnel(math.sqrt((i + 0.5) / n), 1.0 / eta) for i in range(n)) / n
-
-
 def facets(alpha, i, o):
     """D G2 / (4 cos cos), and the cosine to the facet."""
     h = [a + b for a, b in zip(i, o)]
@@ -79,15 +74,57 @@ def direction(polar, azimuth):
     return math.sin(p) * math.cos(a), math.sin(p) * math.sin(a), max(math.cos(p), 1e-4)
 
 
-def brdf(material, channel, i, o):
+def interface_albedo(cosine, eta, alpha):
+    """Share of the light of a direction that the rough interface reflects: facets that are seen from there, by the
+    distribution of visible normals (Heitz, JCGT 2018), with the masking of what leaves them."""
+    sine = math.sqrt(max(1.0 - cosine * cosine, 0.0))
+    x, z = alpha * sine, cosine
+    length = math.hypot(x, z)
+    x, z = x / length, z / length
+    steps = 48
+    total = 0.0
+    for a in range(steps):
+        r = math.sqrt((a + 0.5) / steps)
+        for b in range(steps):
+            phi = 2.0 * math.pi * (b + 0.5) / steps
+            t1, t2 = r * math.cos(phi), r * math.sin(phi)
+            s = 0.5 * (1.0 + z)
+            t2 = (1.0 - s) * math.sqrt(1.0 - t1 * t1) + s * t2
+            up = math.sqrt(max(1.0 - t1 * t1 - t2 * t2, 0.0))
+            h = (alpha * (up * x - t2 * z), alpha * t1, max(up * z + t2 * x, 1e-9))
+            norm = math.sqrt(sum(v * v for v in h))
+            h = [v / norm for v in h]
+            c = max(sine * h[0] + cosine * h[2], 0.0)
+            out = 2.0 * c * h[2] - cosine
+            if out > 0.0:
+                lam = lambda w: 0.5 * (math.sqrt(1.0 + alpha * alpha * (1.0 / (w * w) - 1.0)) - 1.0)
+                total += fresnel(c, eta) * (1.0 + lam(cosine)) / (1.0 + lam(cosine) + lam(out))
+    return total / steps**2
+
+
+class Interface:
+    """What a rough interface lets through: of directions, by linear interpolation of 181 cosines, and of diffuse light."""
+
+    def __init__(self, eta, alpha):
+        n = 180
+        self.through = [1.0 - interface_albedo(max(k / n, 1e-4), eta, alpha) for k in range(n + 1)]
+        self.out = sum(self.of((k + 0.5) / n) * 2.0 * (k + 0.5) / n / n for k in range(n))
+        self.inner = 1.0 - self.out / (eta * eta)  # by reciprocity
+
+    def of(self, cosine):
+        place = min(cosine, 1.0) * (len(self.through) - 1)
+        k = min(int(place), len(self.through) - 2)
+        return self.through[k] + (place - k) * (self.through[k + 1] - self.through[k])
+
+
+def brdf(material, interface, channel, i, o):
     eta, colour, alpha, _, silk = material
     gloss, cosine = facets(alpha, i, o)
-    ri = inner[eta]
+    ri = interface.inner
     # The pigment's own reflectance, of which the colour is what leaves the plastic again.
     total = linear(int(colour[2 * channel : 2 * channel + 2], 16))
-    out = 1.0 - (1.0 - (1.0 - ri) * eta * eta)  # (1 - Re) = (1 - Ri) eta^2 by reciprocity
-    rho = total / (out * (1.0 - ri) + ri * total)
-    through = (1.0 - fresnel(i[2], eta)) * (1.0 - fresnel(o[2], eta))
+    rho = min(total / (interface.out * (1.0 - ri) + ri * total), 0.97)  # no pigment reflects all of it
+    through = interface.of(i[2]) * interface.of(o[2])
     body = rho * through / (eta * eta * math.pi * (1.0 - ri * rho))
     if silk is not None:
         share, flake_alpha = silk
@@ -96,12 +133,10 @@ def brdf(material, channel, i, o):
     return fresnel(cosine, eta) * gloss + body
 
 
-inner = {eta: inner_reflectance(eta) for eta in {m[0] for m in MATERIALS.values()}}
-
-
 def table(name):
     material = MATERIALS[name]
     eta, colour, alpha, source, _ = material
+    interface = Interface(eta, alpha)
     out = io.StringIO()
     out.write("# MODEL, NOT A MEASUREMENT: computed by data/brdf/make.py from optical constants\n")
     out.write(f"# {name}: eta {eta}, colour #{colour} ({source}), GGX alpha {alpha}\n")
@@ -111,7 +146,7 @@ def table(name):
     for incidence in INCIDENCES:
         light = direction(incidence, 0.0)
         for channel, wavelength in enumerate(WAVELENGTHS):
-            rows = [[brdf(material, channel, light, direction(r, a)) for r in RADIALS] for a in AZIMUTHS]
+            rows = [[brdf(material, interface, channel, light, direction(r, a)) for r in RADIALS] for a in AZIMUTHS]
             tis = 0.0
             for row in rows[:-1]:
                 for r, value in zip(RADIALS, row):

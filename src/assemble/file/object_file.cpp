@@ -62,10 +62,10 @@ std::string materialBeside(const std::filesystem::path& folder, const std::strin
 
 std::optional<std::array<double, 2>> readColorRange(OptionSource& options, const std::string& color_by) {
     constexpr double kMost = 1e9;  // of any attribute
-    const std::vector<double> ends = options.numbersOf("color_range", {2}, "two numbers, the lower one first");
+    constexpr const char* kEnds = "MIN,MAX, two numbers, the lower one first";
+    const std::vector<double> ends = options.numbersOf("color_range", {2}, kEnds);
     if (ends.empty()) return std::nullopt;
-    if (!(-kMost <= ends[0] && ends[0] < ends[1] && ends[1] <= kMost))
-        options.refuse("color_range", "two numbers, the lower one first");
+    if (!(-kMost <= ends[0] && ends[0] < ends[1] && ends[1] <= kMost)) options.refuse("color_range", kEnds);
     if (color_by.empty())
         options.refuse("color_range", fmt::format("an attribute beside it, in {}", options.called("color_by")));
     return std::array{ends[0], ends[1]};

@@ -29,8 +29,9 @@ inline constexpr std::size_t kMostMapTexels = std::size_t{1} << 27;
 inline constexpr float kBrightestTexel = 1e12f;
 
 /// Reads a .hdr or .exr map, recognized by content. Throws InputError: missing, of another kind, damaged, too large,
-/// not twice as wide as high, with texels that are negative, no number or, scaled, above kBrightestTexel, or black all
-/// over. Colors of other primaries that the file states (chromaticities, PRIMARIES=) become those of Rec. 709.
+/// not twice as wide as high, with texels that are no number or, scaled, above kBrightestTexel, black all over, or with
+/// more than 2 % of its radiance below 0; less of it is taken as 0. Colors of other primaries that the file states
+/// (chromaticities, PRIMARIES=) become those of Rec. 709.
 /// @param stops  all texels are scaled by 2^stops
 LightMap readLightMap(const std::filesystem::path& path, double stops = 0.0);
 

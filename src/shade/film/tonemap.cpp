@@ -9,6 +9,7 @@
 #include <glm/common.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -56,6 +57,8 @@ PositionRange positionRange(const Film& film) {
     return range;
 }
 
+Color encoded(const Color& c) { return {encodeSrgb(c.r), encodeSrgb(c.g), encodeSrgb(c.b)}; }
+
 /// From the means of a film to what a screen shows, in [0, 1].
 class Display {
 public:
@@ -65,15 +68,19 @@ public:
         if (content_ == FilmContent::position) box_ = positionRange(film);
     }
 
-    /// Whether eight bits are too few for smooth gradients.
-    bool dithers() const { return content_ == FilmContent::radiance || content_ == FilmContent::unit; }
+    /// Whether values are light, which is encoded, and not numbers to be shown as they are.
+    bool isLight() const { return content_ == FilmContent::radiance || content_ == FilmContent::unit; }
+
+    /// What the display shines with, of a pixel of light.
+    Color light(const Color& rgb) const {
+        return content_ == FilmContent::radiance ? toneMapNeutral(glm::max(rgb * scale_, Color(0.0f))) : rgb;
+    }
 
     Color color(const Pixel& pixel) const {
         switch (content_) {
             case FilmContent::radiance:
-                return encoded(toneMapNeutral(glm::max(pixel.rgb * scale_, Color(0.0f))));
             case FilmContent::unit:
-                return encoded(pixel.rgb);
+                return encoded(light(pixel.rgb));
             case FilmContent::normal:
                 return 0.5f * (pixel.rgb + Color(1.0f));
             case FilmContent::position:
@@ -85,7 +92,6 @@ public:
     }
 
 private:
-    static Color encoded(const Color& c) { return {encodeSrgb(c.r), encodeSrgb(c.g), encodeSrgb(c.b)}; }
     Color place(const Pixel& pixel) const {
         Color c = pixel.rgb;
         for (int k = 0; k < 3 && pixel.alpha > 0.0f; ++k) {
@@ -106,6 +112,32 @@ private:
     DepthRange depths_;
     PositionRange box_;
 };
+
+/// A partly transparent pixel, of which `color` is what there is, before encoding. Programs lay pictures over others by
+/// their encoded values: value = S A + (1 - A) b. Light from it over a backdrop of the value b has the value
+///     v(b) = encode(alpha color + (1 - alpha) decode(b)),
+/// which is no line. S and A are those of the line of least squares, with one A for the three channels. For a shadow,
+/// which is black, v is nearly one, since encode() is nearly a power.
+std::array<std::uint8_t, 4> straightPixel(const Color& color, float alpha) {
+    constexpr std::array<float, 5> kBackdrops = {0.0f, 0.25f, 0.5f, 0.75f, 1.0f};
+    constexpr std::array<float, 5> kLight = {0.0f, 0.0508761f, 0.214041f, 0.522522f, 1.0f};  // decoded
+    constexpr float kMean = 0.5f;
+    constexpr float kSquares = 0.625f;  // sum of (b - kMean)^2
+    Color slope(0.0f);
+    Color mean(0.0f);
+    for (std::size_t n = 0; n < kLight.size(); ++n) {
+        const Color value = encoded(alpha * color + Color((1.0f - alpha) * kLight[n]));
+        slope += (kBackdrops[n] - kMean) / kSquares * value;
+        mean += value / static_cast<float>(kLight.size());
+    }
+    const std::uint8_t opaque = toByte(1.0f - (slope.r + slope.g + slope.b) / 3.0f, 0.0f);
+    std::array<std::uint8_t, 4> bytes{0, 0, 0, opaque};
+    if (opaque == 0) return bytes;
+    const float share = static_cast<float>(opaque) / 255.0f;
+    for (int c = 0; c < 3; ++c)
+        bytes[static_cast<std::size_t>(c)] = toByte((mean[c] - (1.0f - share) * kMean) / share, 0.0f);
+    return bytes;
+}
 
 }  // namespace
 
@@ -148,7 +180,7 @@ std::vector<std::uint8_t> toDisplay(const Film& film, const ToneOptions& options
             for (int x = region.x0; x < region.x1; ++x) {
                 const Color c = display.color(film.at(x, y));
                 for (std::uint32_t channel = 0; channel < 3; ++channel)
-                    *out++ = toByte(c[static_cast<int>(channel)], display.dithers() ? dither(x, y, channel) : 0.0f);
+                    *out++ = toByte(c[static_cast<int>(channel)], display.isLight() ? dither(x, y, channel) : 0.0f);
             }
         }
     });
@@ -162,12 +194,19 @@ std::vector<std::uint8_t> toDisplayWithAlpha(const Film& film, const ToneOptions
         if (pixel.alpha > 0.0f) straight.pixels()[n] = {pixel.rgb / pixel.alpha, 1.0f};
     }
     const std::vector<std::uint8_t> rgb = toDisplay(straight, options);
+    const Display display(straight, options);
     std::vector<std::uint8_t> rgba;
     rgba.reserve(4 * film.pixels().size());
     for (std::size_t n = 0; n < film.pixels().size(); ++n) {
-        const std::uint8_t alpha = toByte(film.pixels()[n].alpha, 0.0f);
-        for (std::size_t c = 0; c < 3; ++c) rgba.push_back(alpha > 0 ? rgb[3 * n + c] : std::uint8_t{0});
-        rgba.push_back(alpha);
+        const float alpha = film.pixels()[n].alpha;
+        if (display.isLight() && alpha > 0.0f && alpha < 1.0f) {
+            const std::array<std::uint8_t, 4> pixel = straightPixel(display.light(straight.pixels()[n].rgb), alpha);
+            rgba.insert(rgba.end(), pixel.begin(), pixel.end());
+            continue;
+        }
+        const std::uint8_t byte = toByte(alpha, 0.0f);
+        for (std::size_t c = 0; c < 3; ++c) rgba.push_back(byte > 0 ? rgb[3 * n + c] : std::uint8_t{0});
+        rgba.push_back(byte);
     }
     return rgba;
 }

@@ -99,13 +99,15 @@ Glitter::Glitter(const Color& body, double size)
     : size_(size), plastic_(std::make_shared<Plastic>(body, kFilamentAlpha)) {
     constexpr float kSilver = 0.9f;
     constexpr float kTint = 0.4f;
-    constexpr float kSteepest = 0.97f;  // of the distribution: steeper ones would only be seen from the side
+    // Steeper ones would mirror light from above into the plastic, and be dark: as a share of the distribution.
+    constexpr float kSteepest = 0.7f;  // tan 35 degrees
+    constexpr float kKept = kSteepest * kSteepest / (kSteepest * kSteepest + kSpread * kSpread);
     const Color color = kSilver * ((1.0f - kTint) * Color(1.0f) + kTint * body);
     kinds_.reserve(kKinds);
     for (std::size_t n = 0; n < kKinds; ++n) {
         const std::uint64_t bits = mixed(2 * n + 1);
         // Evenly by radius, so that the kinds together have the distribution.
-        const float share = kSteepest * (static_cast<float>(n) + 0.5f) / static_cast<float>(kKinds);
+        const float share = kKept * (static_cast<float>(n) + 0.5f) / static_cast<float>(kKinds);
         kinds_.emplace_back(plastic_, FlakePair(color, drawSlope({share, fraction(bits)}, kSpread), kFlakeAlpha),
                             n % kEvery == 0 ? kFlakes : 0.0f);
     }

@@ -87,7 +87,9 @@ std::shared_ptr<const RadianceCache> makeRadianceCache(const SceneDescription& s
                                                        const RenderOptions& options,
                                                        const std::function<void()>& check) {
     const IntegratorOptions& kind = options.integrator;
-    if (kind.exact_translucency || !followsPaths(kind) || !scene.anyTranslucent()) return {};
+    // What a deep path brings of ambient light depends on what it had of it before, which no cell of the cache knows.
+    if (kind.exact_translucency || !followsPaths(kind) || !scene.anyTranslucent() || maxComponent(scene.ambient) > 0.0f)
+        return {};
     const auto begin = std::chrono::steady_clock::now();
     const std::size_t streams = streamsFor(options);
     RadianceCacheWork own;

@@ -25,12 +25,11 @@ struct RadianceCacheWork {
     std::array<std::optional<std::size_t>, kBatch> followed;  ///< paths of those that are done, but not in the cache
 };
 
-/// Null where the picture uses none: nothing is translucent, the integrator does not go inside, or
-/// IntegratorOptions::exact_translucency. The paths are from the scene's camera and meet a translucent print first: at
-/// least 1024, a sixteenth of the frame's samples up to 65536, a thirty-second of them up to 262144, and fewer where
-/// the camera sees little of such prints. All parts of a frame have the same cache, and its bits are the same for any
-/// number of threads.
-/// With RenderOptions::seconds it takes no more than half of them.
+/// Null where the picture uses none: nothing is translucent, the integrator does not go inside, there is
+/// ambient light, or IntegratorOptions::exact_translucency. The paths are from the scene's camera and meet a
+/// translucent print first: at least 1024, a sixteenth of the frame's samples up to 65536, a thirty-second of them up
+/// to 262144, and fewer where the camera sees little of such prints. All parts of a frame have the same cache, and its
+/// bits are the same for any number of threads. With RenderOptions::seconds it takes no more than half of them.
 /// @param check  called from time to time from any thread, never from two at once; what it throws ends the work, and
 ///     the next call with the same IntegratorOptions::cache_work goes on
 std::shared_ptr<const RadianceCache> makeRadianceCache(const SceneDescription& scene, const trace::Intersector& print,

@@ -287,13 +287,15 @@ void PathIntegrator::scatterAll(std::span<PathVertex> vertices, std::span<const 
             bounces.pop_back();
             continue;
         }
-        const Path& path = *vertex.path;
+        Path& path = *vertex.path;
         if (bounce.inside != nullptr) {
             walkers.emplace_back(path, bounce.ray, bounce.inside);
             bounces.pop_back();
             continue;
         }
-        sums[path.pixel] += path.throughput * scene_.ambient;
+        // It stands for all light from other surfaces, too: those that the path meets later add none of it.
+        if (!path.ambient) sums[path.pixel] += path.throughput * scene_.ambient;
+        path.ambient = true;
     }
 }
 

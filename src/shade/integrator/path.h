@@ -18,8 +18,8 @@ namespace stratum::shade {
 
 /// Path tracing with `bounces` scattering events. At each of them the environment is sampled by its own density and by
 /// the BRDF's, combined by multiple importance sampling; on the bed its makeBedSampler() takes the place of
-/// that density. Every light is sampled at every vertex; lights with extent also by the BRDF. Unbiased for paths of
-/// that length; nothing is clamped.
+/// that density. Every light is sampled at every vertex; lights with extent also by the BRDF. Ambient light is added
+/// once a path, where it first goes on through the air. Unbiased for paths of that length; nothing is clamped.
 ///
 /// Translucent solids let a path in at their rough surface; it walks inside (RandomWalk) until it meets the surface
 /// from there, is reflected inwards, or leaves. Such events do not count as bounces: the path ends by Russian roulette,

@@ -19,6 +19,7 @@ struct PathState {
     std::size_t pixel = 0;  ///< index of its sampler and of its sum
     int scatterings = 0;    ///< at opaque surfaces
     int crossings = 0;      ///< surfaces of translucent solids that it has met, from either side
+    bool ambient = false;   ///< has had SceneDescription::ambient
 };
 
 /// A path inside of a solid.

@@ -1,6 +1,7 @@
 
 #include "base/error.h"
 #include "scratch_folder.h"
+#include "shade/brdf_checks.h"
 #include "shade/finish/named_brdf.h"
 
 #include <gtest/gtest.h>
@@ -38,6 +39,21 @@ TEST(MakeBrdf, TablesOfTheProjectComeBeforeFilesOfTheirNames) {
     EXPECT_NO_THROW(makeBrdf("pla-blue"));
     EXPECT_NO_THROW(makeBrdf("petg-orange"));
     EXPECT_THROW(makeBrdf("./pla-blue"), InputError);
+}
+
+// What a coat reflects more at grazing angles is not less than what it takes from the body: no bead has a dark rim.
+TEST(MakeBrdf, TablesOfTheProjectAreNotDarkAtGrazingAngles) {
+    for (const char* name :
+         {"pla-blue", "pla-green", "pla-red", "pla-white", "pla-yellow", "petg-black", "petg-orange", "silk-pink"}) {
+        const auto brdf = makeBrdf(name);
+        double before = 0.97 * test::sampledAlbedo(*brdf, test::direction(1.0, 0.0));
+        for (const double cosine : {0.7, 0.5, 0.3, 0.1, 0.05}) {
+            const double albedo = test::sampledAlbedo(*brdf, test::direction(cosine, 0.0));
+            EXPECT_GT(albedo, before) << name << " " << cosine;
+            EXPECT_LT(albedo, 1.0) << name << " " << cosine;
+            before = 0.97 * albedo;
+        }
+    }
 }
 
 TEST(MakeBrdf, GuessesMistypedNames) {

@@ -36,7 +36,7 @@ TEST(LightMap, RefusesWhatGivesNoPicture) {
         }
     };
     refused(2, 1, {{1, 1, 1}, {std::nanf(""), 0, 0}}, "texel 1, 0");
-    refused(2, 1, {{1, -1, 1}, {0, 0, 0}}, "texel 0, 0");
+    refused(2, 1, {{1, -1, 1}, {0, 0, 0}}, "33.3 %");
     refused(2, 1, {{std::numeric_limits<float>::infinity(), 1, 1}, {0, 0, 0}}, "texel 0, 0");
     refused(2, 1, {{0, 0, 0}, {0, 0, 0}}, "black");
     refused(2, 2, std::vector<Color>(4, Color(1.0f)), "twice as wide");
@@ -46,6 +46,13 @@ TEST(LightMap, RefusesWhatGivesNoPicture) {
     std::filesystem::resize_file(path, std::filesystem::file_size(path) / 2);
     EXPECT_THROW(readLightMap(path), InputError);
     EXPECT_THROW(readLightMap(scratch.path() / "none.exr"), InputError);
+}
+
+TEST(LightMap, TakesALittleNegativeLightAsNone) {
+    const test::ScratchFolder scratch;
+    const auto path = scratch.path() / "map.exr";
+    test::writeExrMap(path, 2, 1, {{1, -0.01f, 1}, {-1e-6f, 0.5f, 0}});
+    EXPECT_EQ(readLightMap(path).texels, (std::vector<Color>{{1, 0, 1}, {0, 0.5f, 0}}));
 }
 
 TEST(LightMap, ScalesAndChecksAfterwards) {

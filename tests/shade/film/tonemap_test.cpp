@@ -4,7 +4,10 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <cstdint>
 #include <limits>
+#include <vector>
 
 namespace stratum {
 namespace {
@@ -87,6 +90,42 @@ TEST(ToDisplay, ShowsGeometry) {
     EXPECT_EQ(bytes[0], 255);
     EXPECT_EQ(bytes[3], 26);
     EXPECT_EQ(bytes[6], 0);
+}
+
+// What a browser makes of the four bytes, over a backdrop of the encoded value b, beside what light gives.
+TEST(ToDisplayWithAlpha, LaidOverAPageByEncodedValuesIsWhatLightGives) {
+    const auto linear = [](double v) { return v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4); };
+    struct Case {
+        Color color;  // of what is there
+        float alpha;
+        double error;  // at most, of 255
+    };
+    for (const Case& c : {Case{Color(0.0f), 0.1f, 2.0},
+                          {Color(0.0f), 0.5f, 4.0},
+                          {Color(0.0f), 0.9f, 9.0},
+                          {Color(0.6f), 0.5f, 15.0},
+                          {Color(0.6f, 0.2f, 0.05f), 0.25f, 37.0},
+                          {Color(0.6f, 0.2f, 0.05f), 0.75f, 27.0},
+                          {Color(0.3f), 1.0f, 1.0}}) {
+        Film film(1, 1, {0, 0, 1, 1});
+        film.pixels()[0] = {c.alpha * c.color, c.alpha};
+        const std::vector<std::uint8_t> rgba = shade::toDisplayWithAlpha(film);
+        const Color shown = shade::toneMapNeutral(c.color);
+        double squares = 0.0;
+        double plain = 0.0;  // with color and alpha as light has them
+        for (int n = 0; n <= 20; ++n)
+            for (int k = 0; k < 3; ++k) {
+                const double b = n / 20.0;
+                const double light = c.alpha * shown[k] + (1.0 - c.alpha) * linear(b);
+                const double wanted = 255.0 * shade::encodeSrgb(static_cast<float>(light));
+                const double page = rgba[3] / 255.0 * rgba[k] + (1.0 - rgba[3] / 255.0) * 255.0 * b;
+                EXPECT_NEAR(page, wanted, c.error) << c.color.r << " " << c.alpha << " over " << b << ", channel " << k;
+                const double by_light = 255.0 * (c.alpha * shade::encodeSrgb(shown[k]) + (1.0 - c.alpha) * b);
+                squares += (page - wanted) * (page - wanted);
+                plain += (by_light - wanted) * (by_light - wanted);
+            }
+        if (c.alpha < 1.0f) EXPECT_LT(squares, 0.55 * plain) << c.color.r << " " << c.alpha;
+    }
 }
 
 TEST(ToneOptions, RefusesNonsense) {

@@ -64,6 +64,18 @@ TEST(Glitter, QuadratureAgreesWithSampling) {
     EXPECT_LE(mean, 1.001);
 }
 
+// None of its places is a dark hole in the white.
+TEST(Glitter, NoFlakeIsDark) {
+    const Glitter glitter(Color(1.0f), 0.5);
+    std::set<const Brdf*> seen;
+    for (int n = 0; n < 1500; ++n) {
+        const Brdf& spot = glitter.at({0.5 * n + 0.1, -7.0, 3.0});
+        if (!seen.insert(&spot).second) continue;
+        for (const double cosine : {1.0, 0.7})
+            ASSERT_GT(test::sampledAlbedo(spot, test::direction(cosine, 0.5), 1u << 12), 0.7) << n << " " << cosine;
+    }
+}
+
 TEST(Glitter, SamplesItsDensity) {
     const FlakePair flakes(Color(0.5f), {0.3f, 0.1f}, 0.3f);
     for (const double c : {0.3, 0.95})

@@ -62,7 +62,7 @@ private:
         // f cos over the density of the hemisphere.
         const glm::dvec3 weight = glm::dvec3(point.brdf->eval(wo, wi)) * z * 2.0 * std::numbers::pi;
         const trace::Ray ray = surfaces_.leave(point, frame.toWorld(wi));
-        glm::dvec3 incoming = glm::dvec3(scene_.ambient);
+        glm::dvec3 incoming = depth == 1 ? glm::dvec3(scene_.ambient) : glm::dvec3(0.0);
         shade::SurfacePoint next;
         const bool meets = surfaces_.nearest(ray, *tracer_, next);
         // Lamps give light and stand in no one's way.

@@ -146,6 +146,22 @@ TEST(Path, AmbientLightReachesEverywhere) {
     EXPECT_NEAR(mean(none, scene, towards({0, 0, 5}, {0, 0.1, 0}), 1, 64).r, 0.5f * scene.bed->texture.mean().r, 1e-5f);
 }
 
+// In a hollow every ray meets the surface again: by one bounce or by eight, a white one shows the ambient radiance.
+TEST(Path, AmbientLightIsAddedOnceAPath) {
+    const auto ball = test::sphere({0, 0, 0}, 10.0);
+    const std::shared_ptr<trace::Tracer> tracer = ball.makeTracer();
+    const test::FunctionIntersector hollow({{-10, -10, -10}, {10, 10, 10}}, 1e-5,
+                                           [&](const trace::Ray& ray, trace::Hit& hit) {
+                                               if (!tracer->intersect(ray, hit)) return false;
+                                               hit.normal = -hit.normal;
+                                               return true;
+                                           });
+    auto scene = test::plainScene(hollow, "lambert:1,1,1", "constant:0,0,0", false);
+    scene.ambient = Color(0.5f);
+    for (const int bounces : {1, 2, 8})
+        EXPECT_NEAR(mean(hollow, scene, towards({0, 0, 5}, {0, 0, 10}), bounces, 64).r, 0.5f, 1e-5f) << bounces;
+}
+
 TEST(Path, EnvironmentSamplingIsUnbiased) {
     // The same integral without importance sampling of the light: uniform directions, no MIS.
     const auto ball = test::sphere({0, 0, 0}, 1.0);

@@ -75,7 +75,15 @@ TEST(FilamentColor, APictureShowsTheColorThatIsStated) {
                           {"#F2B33D", 12},
                           {"#808080", 12},
                           {"#FFFFFF", 15},
-                          {"#000000", 20}}) {
+                          {"#000000", 20},
+                          // Of these the coat's reflection, which is white, takes more: it is bright beside a channel
+                          // that is 0.
+                          {"#FF0000", 27},
+                          {"#00FF00", 20},
+                          {"#0000FF", 28},
+                          {"#FF6600", 22},
+                          {"#FFFF00", 17},
+                          {"#000080", 22}}) {
         shade::SceneOptions options;
         options.brdf = c.text;
         shade::RenderOptions render;
