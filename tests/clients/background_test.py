@@ -52,6 +52,16 @@ check(trace("one.png", "--threads", "1") == content("a.png"), "  the same bytes 
 rows = rgba_rows(trace("sky.png", "--env", "sky"))
 check(rows[0][0][3] == 0, "  a sky isn't seen either")
 
+# Laid over the bare bed by encoded values, as a browser does it, a shadow is as dark as in the picture with the bed.
+options = ["--spp", "64", "--exposure", "0"]
+over = rgba_rows(trace("over.png", *options))
+run(VDBTRACE, *(word for word in PICTURE if word not in ("--background", "none")), "-o", path("whole.png"), *options)
+_, _, whole = png_pixels(content("whole.png"))
+bare = whole[59][0]
+errors = [bare * (255 - pixel[3]) / 255 - row[3 * x] for row, alphas in zip(whole, over) for x, pixel in enumerate(alphas)
+          if 60 < pixel[3] < 250 and max(pixel[:3]) < 6]
+check(len(errors) > 30 and abs(sum(errors) / len(errors)) < 12, f"  {len(errors)} pixels of shadow over the bed: {sum(errors) / len(errors):.1f} of 255")
+
 webp = trace("a.webp")
 check(webp[12:16] == b"VP8X" and webp[20] & 0x10, "WebP says that it has alpha")
 exr = trace("a.exr", "--spp", "8")

@@ -131,6 +131,8 @@ void denoise(Film& film, const Progress& progress) {
                                 Pixel& pixel = film.at(film.region().x0 + x0 + x, film.region().y0 + y0 + y);
                                 pixel.rgb = {scratch.colors[0][from], scratch.colors[1][from], scratch.colors[2][from]};
                                 if (alpha) pixel.alpha = std::min(scratch.colors[3][from], 1.0f);
+                                // Colors are premultiplied: where nothing is, neighbours must not leave any.
+                                if (!(pixel.alpha > 0.0f)) pixel = {};
                             }
                         if (!progress) continue;
                         const std::lock_guard lock(mutex);

@@ -200,6 +200,13 @@ TEST(Denoise, LeavesWhatHasNoNoise) {
     for (const shade::Pixel& p : film.pixels()) ASSERT_NEAR(p.rgb.g, 0.2f, 1e-5f);
 }
 
+TEST(Denoise, LeavesNoColorWhereNothingIs) {
+    Film film = vase(4, 1);
+    for (int y = kPart.y0; y < kPart.y1; ++y) film.at(30, y) = {};
+    shade::denoise(film);
+    for (int y = kPart.y0; y < kPart.y1; ++y) ASSERT_EQ(film.at(30, y).rgb, shade::Color(0.0f)) << y;
+}
+
 TEST(Denoise, RefusesWhatItCantDo) {
     Film film(8, 8, {0, 0, 8, 8});
     EXPECT_THROW(shade::denoise(film), std::invalid_argument);
