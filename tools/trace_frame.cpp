@@ -13,13 +13,11 @@
 #include "shade/integrator/radiance_cache.h"
 #include "shade/measured/brdf_file.h"
 #include "shade/post/denoise.h"
-#include "voxelize/grid/voxel_choice.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
 #include <functional>
 #include <memory>

@@ -6,7 +6,6 @@
 #include "progress.h"
 #include "run_files.h"
 
-#include "base/error.h"
 #include "base/human_text.h"
 #include "study/polygons/peer_tracers.h"
 #include "study/study.h"
@@ -14,7 +13,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <functional>
 #include <string>
 #include <vector>

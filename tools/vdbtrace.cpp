@@ -6,7 +6,6 @@
 #include "print_options.h"
 #include "run_files.h"
 #include "shade/environment/environment.h"
-#include "shade/finish/named_brdf.h"
 #include "trace_film.h"
 #include "trace_frame.h"
 #include "trace_options.h"

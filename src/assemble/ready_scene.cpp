@@ -1,6 +1,5 @@
 #include "assemble/ready_scene.h"
 
-#include "base/error.h"
 #include "shade/post/exposure.h"
 #include "shade/scene/paper_tone.h"
 

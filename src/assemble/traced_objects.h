@@ -7,7 +7,6 @@
 #include "shade/film/legend.h"
 #include "shade/scene/material.h"
 #include "shade/scene/scene.h"
-#include "trace/scene_intersector.h"
 
 #include <nlohmann/json.hpp>
 

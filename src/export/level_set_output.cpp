@@ -7,7 +7,6 @@
 #include <openvdb/io/io.h>
 
 #include <memory>
-#include <string_view>
 #include <utility>
 
 namespace stratum::exporter {

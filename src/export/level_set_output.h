@@ -15,8 +15,6 @@
 #include <filesystem>
 #include <ostream>
 #include <span>
-#include <string>
-#include <string_view>
 #include <vector>
 
 namespace stratum::exporter {

@@ -18,7 +18,6 @@
 
 #include <exception>
 #include <stdexcept>
-#include <string>
 #include <vector>
 
 namespace stratum::exporter {

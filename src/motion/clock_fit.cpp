@@ -3,7 +3,6 @@
 #include "motion/planner.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 namespace stratum::motion {

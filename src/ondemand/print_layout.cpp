@@ -1,11 +1,8 @@
 #include "ondemand/print_layout.h"
 
 #include "base/memory.h"
-#include "voxelize/beads/estimate.h"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 #include <utility>
 
 namespace stratum::ondemand {

@@ -22,7 +22,6 @@
 #include <openvdb/openvdb.h>
 
 #include <array>
-#include <string>
 #include <string_view>
 #include <utility>
 

@@ -6,7 +6,6 @@
 
 #include <openvdb/openvdb.h>
 
-#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <memory>

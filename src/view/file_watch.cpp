@@ -5,7 +5,6 @@
 #include <unistd.h>
 
 #include <array>
-#include <cstddef>
 #include <cstring>
 #include <filesystem>
 #include <system_error>

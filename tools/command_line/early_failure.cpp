@@ -2,7 +2,6 @@
 
 #include <unistd.h>
 
-#include <exception>
 #include <string_view>
 
 namespace stratum::tools {

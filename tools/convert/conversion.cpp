@@ -9,7 +9,6 @@
 
 #include "base/atomic_file.h"
 #include "base/checksum.h"
-#include "base/error.h"
 #include "base/human_text.h"
 #include "deposit/read_print.h"
 #include "export/mesh_file.h"
@@ -21,7 +20,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstdio>
 #include <utility>
 
 namespace stratum::tools {

@@ -19,7 +19,6 @@
 #include <algorithm>
 #include <cmath>
 #include <span>
-#include <utility>
 
 namespace stratum::tools {
 

@@ -1,7 +1,6 @@
 #include "convert/mesh_output.h"
 
 #include "base/error.h"
-#include "export/mesh/three_mf_file.h"
 #include "export/mesh_file.h"
 #include "gcode/slicer/bead_colors.h"
 #include "gcode/toolpath/color.h"
@@ -9,9 +8,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
-#include <string>
-#include <utility>
 
 namespace stratum::tools {
 namespace {

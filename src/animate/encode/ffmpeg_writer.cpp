@@ -22,7 +22,6 @@
 #include <fstream>
 #include <initializer_list>
 #include <system_error>
-#include <utility>
 
 namespace stratum::animate {
 

@@ -1,7 +1,6 @@
 #include "assemble/file/file_facts.h"
 
 #include "base/checksum.h"
-#include "base/error.h"
 #include "base/input_file.h"
 #include "gcode/container/container.h"
 #include "march/file/grid_axes.h"

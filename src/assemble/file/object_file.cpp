@@ -1,7 +1,6 @@
 #include "assemble/file/object_file.h"
 
 #include "assemble/file/sdf_file.h"
-#include "base/error.h"
 #include "shade/finish/named_brdf.h"
 
 #include <fmt/format.h>

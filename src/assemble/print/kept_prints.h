@@ -6,7 +6,6 @@
 #include "assemble/print/print_levels.h"
 #include "trace/intersector.h"
 
-#include <cstddef>
 #include <map>
 #include <memory>
 #include <string>

@@ -1,6 +1,5 @@
 #include "assemble/print/print_levels.h"
 
-#include "assemble/file/file_facts.h"
 #include "assemble/print/kept_prints.h"
 #include "base/checksum.h"
 #include "base/error.h"
@@ -18,7 +17,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <string_view>
 #include <utility>
 #include <vector>
 

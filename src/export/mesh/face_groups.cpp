@@ -1,7 +1,5 @@
 #include "export/mesh/face_groups.h"
 
-#include <algorithm>
-
 namespace stratum::exporter {
 
 FaceGroups::FaceGroups(const SurfaceMesh& mesh) {

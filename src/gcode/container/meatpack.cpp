@@ -1,7 +1,6 @@
 #include "gcode/container/meatpack.h"
 
 #include <array>
-#include <cstdint>
 
 namespace stratum::gcode {
 namespace {

@@ -3,7 +3,6 @@
 #include "gcode/text/lexer.h"
 
 #include <algorithm>
-#include <cstring>
 #include <optional>
 
 namespace stratum::gcode {

@@ -12,7 +12,6 @@
 #include "gcode/toolpath/frame.h"
 #include "gcode/toolpath/stated.h"
 
-#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>

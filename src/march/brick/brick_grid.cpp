@@ -10,7 +10,6 @@
 #include <tbb/spin_mutex.h>
 
 #include <algorithm>
-#include <type_traits>
 #include <utility>
 
 namespace stratum::march {

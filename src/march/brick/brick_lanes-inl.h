@@ -23,7 +23,6 @@
 
 #include <hwy/highway.h>
 
-#include <array>
 #include <atomic>
 #include <bit>
 #include <cstddef>

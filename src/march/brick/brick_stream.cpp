@@ -2,8 +2,6 @@
 
 #include "march/brick/brick_walk.h"
 
-#include <array>
-#include <bit>
 #include <cstdint>
 #include <limits>
 

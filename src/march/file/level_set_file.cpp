@@ -15,7 +15,6 @@
 #include <limits>
 #include <numbers>
 #include <set>
-#include <string_view>
 #include <system_error>
 #include <utility>
 #include <vector>

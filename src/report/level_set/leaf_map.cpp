@@ -4,7 +4,6 @@
 
 #include <tbb/parallel_sort.h>
 
-#include <algorithm>
 #include <cstring>
 #include <tuple>
 #include <utility>

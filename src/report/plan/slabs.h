@@ -6,7 +6,6 @@
 #include "voxelize/beads/lattice.h"
 #include "voxelize/beads/layer_stack.h"
 
-#include <string>
 #include <vector>
 
 namespace stratum::report {

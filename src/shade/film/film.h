@@ -4,7 +4,6 @@
 #include "shade/color.h"
 
 #include <cstddef>
-#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>

@@ -11,7 +11,6 @@
 #include <cmath>
 #include <map>
 #include <numbers>
-#include <set>
 #include <tuple>
 
 namespace stratum::shade {

@@ -5,7 +5,6 @@
 #include "shade/film/exr.h"
 
 #include <filesystem>
-#include <string_view>
 
 namespace stratum::shade {
 

@@ -14,7 +14,6 @@
 #include <zlib.h>
 #include <glm/geometric.hpp>
 
-#include <cmath>
 #include <numbers>
 
 namespace stratum::shade {

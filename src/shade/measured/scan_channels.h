@@ -1,7 +1,6 @@
 // From the spectral channels of a file to the three of a Color.
 #pragma once
 
-#include <string_view>
 #include <vector>
 
 namespace stratum::shade {

@@ -1,7 +1,5 @@
 #include "shade/post/denoise_block.h"
 
-#include <algorithm>
-
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "shade/post/denoise_block.cpp"
 #include <hwy/foreach_target.h>

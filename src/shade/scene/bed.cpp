@@ -1,7 +1,5 @@
 #include "shade/scene/bed.h"
 
-#include "base/error.h"
-#include "base/names.h"
 #include "shade/brdf/lambert.h"
 #include "shade/brdf/plastic.h"
 #include "shade/camera/sampler.h"

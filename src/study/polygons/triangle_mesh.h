@@ -3,7 +3,6 @@
 
 #include <glm/vec3.hpp>
 
-#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <vector>

@@ -1,7 +1,6 @@
 #include "study/report/page.h"
 
 #include "base/atomic_file.h"
-#include "base/error.h"
 #include "base/text.h"
 #include "report/text/html_page.h"
 

@@ -1,7 +1,6 @@
 #include "study/report/table.h"
 
 #include "base/atomic_file.h"
-#include "base/error.h"
 
 #include <fmt/format.h>
 

@@ -1,6 +1,5 @@
 #include "view/input/document.h"
 
-#include "assemble/file/file_facts.h"
 #include "assemble/file/input_files.h"
 #include "base/error.h"
 #include "gcode/summary.h"

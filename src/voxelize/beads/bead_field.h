@@ -11,7 +11,6 @@
 #include "gcode/toolpath/toolpath.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <span>

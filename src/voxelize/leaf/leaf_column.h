@@ -12,7 +12,6 @@
 
 #include <openvdb/openvdb.h>
 
-#include <array>
 #include <cstdint>
 #include <limits>
 #include <memory>

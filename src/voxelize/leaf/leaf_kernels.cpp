@@ -1,7 +1,5 @@
 #include "voxelize/leaf/leaf_kernels.h"
 
-#include <cmath>
-
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "voxelize/leaf/leaf_kernels.cpp"
 #include <hwy/foreach_target.h>

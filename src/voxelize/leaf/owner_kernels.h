@@ -3,8 +3,6 @@
 
 #include "voxelize/leaf/leaf_kernels.h"
 
-#include <cstdint>
-
 namespace stratum::voxelize {
 
 /// One layer in one plane of a leaf, world units. `sides2`, `d` and `rise` as of PlaneTerm.

@@ -3,7 +3,6 @@
 
 #include "voxelize/leaf/leaf_kernels.h"
 
-#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <optional>

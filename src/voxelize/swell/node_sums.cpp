@@ -1,7 +1,6 @@
 #include "voxelize/swell/node_sums.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstring>
 
 #undef HWY_TARGET_INCLUDE

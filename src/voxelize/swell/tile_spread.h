@@ -5,7 +5,6 @@
 #include "voxelize/swell/swell_field.h"
 
 #include <array>
-#include <cstddef>
 
 namespace stratum::voxelize {
 
