@@ -16,7 +16,6 @@
 #include <csignal>
 #include <cstdio>
 #include <cstring>
-#include <fstream>
 #include <mutex>
 #include <set>
 #include <string>
@@ -332,12 +331,28 @@ void AtomicFile::removeOnSignals() {
     }
 }
 
+FileWriter::FileWriter(const std::filesystem::path& destination)
+    : file_(destination), out_(file_.temporary(), std::ios::binary) {}
+
+void FileWriter::flush() {
+    out_.write(buffer_.data(), static_cast<std::streamsize>(buffer_.size()));
+    buffer_.clear();
+}
+
+void FileWriter::close() {
+    flush();
+    out_.close();
+    if (!out_) throw writeError(file_.destination().string());
+}
+
+void FileWriter::commit() {
+    if (out_.is_open()) close();
+    file_.commit();
+}
+
 void writeFile(const std::filesystem::path& destination, std::string_view bytes) {
-    AtomicFile file(destination);
-    std::ofstream stream(file.temporary(), std::ios::binary);
-    stream.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-    stream.close();
-    if (!stream) throw writeError(destination.string());
+    FileWriter file(destination);
+    file.text(bytes);
     file.commit();
 }
 

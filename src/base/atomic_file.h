@@ -1,7 +1,10 @@
 // Atomic output: a file is written without a name, or beside its destination, and then renamed over it.
 #pragma once
 
+#include <cstddef>
+#include <cstring>
 #include <filesystem>
+#include <fstream>
 #include <functional>
 #include <string>
 #include <string_view>
@@ -89,6 +92,37 @@ private:
     int fd_ = -1;                      // holds the lock
     int stream_ = -1;                  // the destination, if it is a stream
     int slot_ = -1;                    // of part_, while there is such a file
+};
+
+/// An atomic file that is written from its beginning to its end, a megabyte at a time.
+class FileWriter {
+public:
+    /// Throws as AtomicFile does.
+    explicit FileWriter(const std::filesystem::path& destination);
+
+    void text(std::string_view text) {
+        buffer_.append(text);
+        if (buffer_.size() >= kChunk) flush();
+    }
+    /// As the machine holds it.
+    template <typename T>
+    void raw(const T& value) {
+        char bytes[sizeof(T)];
+        std::memcpy(bytes, &value, sizeof(T));
+        text({bytes, sizeof(T)});
+    }
+    /// What was written is in the file. Throws OutputError.
+    void close();
+    /// Closes it, and gives it its name. Throws OutputError.
+    void commit();
+
+private:
+    static constexpr std::size_t kChunk = 1 << 20;
+    void flush();
+
+    AtomicFile file_;
+    std::ofstream out_;
+    std::string buffer_;
 };
 
 /// All of a file at once, as AtomicFile does. Throws OutputError, UsageError.

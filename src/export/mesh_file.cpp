@@ -3,7 +3,6 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/text.h"
-#include "export/mesh/chunk_writer.h"
 #include "export/mesh/gltf_file.h"
 #include "export/mesh/obj_file.h"
 #include "export/mesh/three_mf_file.h"
@@ -15,7 +14,6 @@
 #include <array>
 #include <bit>
 #include <cstdint>
-#include <fstream>
 #include <limits>
 #include <string>
 #include <string_view>
@@ -27,7 +25,7 @@ static_assert(std::endian::native == std::endian::little, "STL and PLY are writt
 
 std::string extensionOf(const std::filesystem::path& path) { return lowerCase(path.extension().string()); }
 
-void writeStl(const SurfaceMesh& mesh, ChunkWriter& out) {
+void writeStl(const SurfaceMesh& mesh, FileWriter& out) {
     std::array<char, 80> header{};
     fmt::format_to_n(header.data(), header.size() - 1, "binary STL by Stratum {}", STRATUM_VERSION);
     out.raw(header);
@@ -47,7 +45,7 @@ void writeStl(const SurfaceMesh& mesh, ChunkWriter& out) {
 
 std::size_t cornersOf(const SurfaceMesh::Face& face) { return face[3] == SurfaceMesh::kNone ? 3 : 4; }
 
-void writePly(const SurfaceMesh& mesh, ChunkWriter& out) {
+void writePly(const SurfaceMesh& mesh, FileWriter& out) {
     out.text(fmt::format(
         "ply\nformat binary_little_endian 1.0\ncomment by Stratum {}\nelement vertex {}\nproperty float x\n"
         "property float y\nproperty float z\n{}element face {}\nproperty list uchar uint vertex_indices\n"
@@ -66,14 +64,9 @@ void writePly(const SurfaceMesh& mesh, ChunkWriter& out) {
 }
 
 void writeBinary(const SurfaceMesh& mesh, const std::filesystem::path& path, bool ply) {
-    AtomicFile file(path);
-    std::ofstream stream(file.temporary(), std::ios::binary);
-    ChunkWriter out(stream);
+    FileWriter out(path);
     ply ? writePly(mesh, out) : writeStl(mesh, out);
-    out.flush();
-    stream.close();
-    if (!stream) throw writeError(path.string());
-    file.commit();
+    out.commit();
 }
 
 constexpr std::array<std::string_view, 6> kMeshes{".stl", ".ply", ".obj", ".3mf", ".glb", ".usda"};

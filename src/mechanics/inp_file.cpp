@@ -10,7 +10,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <iterator>
 #include <numbers>
 #include <string_view>
@@ -25,9 +24,9 @@ constexpr std::size_t kChunksAtOnce = 32;
 // Lines of numbers are made by all threads, a few chunks at a time, and written in order.
 class Lines {
 public:
-    explicit Lines(std::ofstream& out) : out_(out) {}
+    explicit Lines(FileWriter& out) : out_(out) {}
 
-    void text(std::string_view text) { out_.write(text.data(), static_cast<std::streamsize>(text.size())); }
+    void text(std::string_view text) { out_.text(text); }
 
     // line(n, buffer) appends line n.
     template <typename Line>
@@ -56,7 +55,7 @@ public:
     }
 
 private:
-    std::ofstream& out_;
+    FileWriter& out_;
 };
 
 // A micrometre's thousandth is below what the solvers' single precision of coordinates shows.
@@ -164,9 +163,8 @@ InpReport writeInp(const SolidElements& elements, const Hexahedra& mesh, const g
         throw UsageError(fmt::format(
             "{}: the print holds less plastic than half an element of {:g} mm; choose a smaller --voxel-size",
             path.string(), elements.edge));
-    AtomicFile file(path);
-    std::ofstream stream(file.temporary(), std::ios::binary);
-    Lines out(stream);
+    FileWriter file(path);
+    Lines out(file);
     InpReport report;
     out.text(fmt::format("** by Stratum {}: {}\n** mm, N, MPa; {} nodes, {} elements of {:g} mm\n", STRATUM_VERSION,
                          options.source, mesh.nodes.size(), elements.list.size(), elements.edge));
@@ -180,8 +178,6 @@ InpReport writeInp(const SolidElements& elements, const Hexahedra& mesh, const g
     report.node_sets = of_nodes.size();
     if (options.elastic)
         report.directions = writeMaterial(elements, toolpath, *options.elastic, options.placement.tilt, out);
-    stream.close();
-    if (!stream) throw writeError(path.string());
     file.commit();
     return report;
 }

@@ -2,7 +2,6 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
-#include "export/mesh/chunk_writer.h"
 #include "export/mesh/face_groups.h"
 #include "export/mesh/linear_color.h"
 
@@ -13,7 +12,6 @@
 #include <array>
 #include <bit>
 #include <cstdint>
-#include <fstream>
 #include <limits>
 #include <string>
 
@@ -123,15 +121,13 @@ void requireGlbSize(std::size_t points, std::size_t triangles, const std::filesy
 
 void writeGlb(const SurfaceMesh& mesh, const std::filesystem::path& path, const MeshSpace& space) {
     requireGlbSize(mesh.points.size(), mesh.triangleCount(), path);
-    AtomicFile file(path);
+    FileWriter out(path);
     const FaceGroups groups(mesh);
     std::string head = headOf(mesh, groups, space);
     head.resize((head.size() + 3) / 4 * 4, ' ');
     const std::uint64_t binary = kBytesPerItem * (mesh.points.size() + mesh.triangleCount());
     constexpr std::uint64_t kHeaders = 12 + 8 + 8;
     const std::uint64_t total = kHeaders + head.size() + binary;
-    std::ofstream stream(file.temporary(), std::ios::binary);
-    ChunkWriter out(stream);
     out.raw(kMagic);
     out.raw(kVersion);
     out.raw(static_cast<std::uint32_t>(mesh.faces.empty() ? total - 8 - binary : total));
@@ -150,10 +146,7 @@ void writeGlb(const SurfaceMesh& mesh, const std::filesystem::path& path, const 
                 out.raw(c);
             });
     }
-    out.flush();
-    stream.close();
-    if (!stream) throw writeError(path.string());
-    file.commit();
+    out.commit();
 }
 
 }  // namespace stratum::exporter

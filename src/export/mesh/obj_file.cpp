@@ -2,38 +2,28 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
-#include "export/mesh/chunk_writer.h"
 #include "export/mesh/face_groups.h"
 #include "export/mesh/linear_color.h"
 #include "gcode/toolpath/color.h"
 
 #include <fmt/format.h>
 
-#include <fstream>
 #include <optional>
 
 namespace stratum::exporter {
 namespace {
 
-void close(ChunkWriter& out, std::ofstream& stream, const std::filesystem::path& path) {
-    out.flush();
-    stream.close();
-    if (!stream) throw writeError(path.string());
-}
-
-void writeMtl(const SurfaceMesh& mesh, const AtomicFile& file) {
-    std::ofstream stream(file.temporary(), std::ios::binary);
-    ChunkWriter out(stream);
+void writeMtl(const SurfaceMesh& mesh, FileWriter& out) {
     out.text(fmt::format("# by Stratum {}\n", STRATUM_VERSION));
     for (const MeshMaterial& material : mesh.materials) {
         const auto linear = linearOf(material.color);
         out.text(fmt::format("\nnewmtl {}\n# sRGB {}\nKd {:.6f} {:.6f} {:.6f}\nKs 0.04 0.04 0.04\nNs 40\nillum 2\n",
                              material.name, gcode::colorText(material.color), linear[0], linear[1], linear[2]));
     }
-    close(out, stream, file.destination());
+    out.close();
 }
 
-void writeFaces(const SurfaceMesh& mesh, ChunkWriter& out) {
+void writeFaces(const SurfaceMesh& mesh, FileWriter& out) {
     const FaceGroups groups(mesh);
     for (std::size_t group = 0; group < groups.count(); ++group) {
         if (groups.faces(group) == 0) continue;
@@ -54,18 +44,16 @@ void writeObj(const SurfaceMesh& mesh, const std::filesystem::path& path) {
     const bool materials = !mesh.materials.empty();
     if (materials && isStandardOutput(path))
         throw UsageError(fmt::format("-o {}: colours of an OBJ are in a .mtl beside it; name a file", path.string()));
-    AtomicFile file(path);
-    std::optional<AtomicFile> mtl;
+    FileWriter out(path);
+    std::optional<FileWriter> mtl;
     if (materials) writeMtl(mesh, mtl.emplace(mtlOf(path)));
-    std::ofstream stream(file.temporary(), std::ios::binary);
-    ChunkWriter out(stream);
     out.text(fmt::format("# by Stratum {}\n", STRATUM_VERSION));
     if (materials) out.text(fmt::format("mtllib {}\n", mtlOf(path).filename().string()));
     for (const openvdb::Vec3s& p : mesh.points) out.text(fmt::format("v {} {} {}\n", p[0], p[1], p[2]));
     writeFaces(mesh, out);
-    close(out, stream, path);
+    out.close();  // both are whole before one has its name
     if (mtl) mtl->commit();
-    file.commit();
+    out.commit();
 }
 
 }  // namespace stratum::exporter

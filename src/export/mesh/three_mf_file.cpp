@@ -11,7 +11,6 @@
 #include <algorithm>
 #include <cstdint>
 #include <cstring>
-#include <fstream>
 #include <iterator>
 #include <limits>
 #include <memory>
@@ -250,23 +249,20 @@ void write3mf(const SurfaceMesh& mesh, const std::filesystem::path& path, const 
     if (mesh.triangleCount() > kMost || mesh.points.size() > kMost)
         throw UsageError(fmt::format("{}: {} triangles are more than 3MF can count; choose a larger voxel",
                                      path.string(), mesh.triangleCount()));
-    AtomicFile file(path);
+    FileWriter out(path);
     ModelSource model{ModelText(mesh, space), 0};
     model.bytes = model.text.length();
     const Source packed = pack(model, path);
-    std::ofstream stream(file.temporary(), std::ios::binary);
     std::vector<char> bytes(std::size_t{1} << 20);
     if (zip_source_open(packed.get()) != 0) fail(path, "its bytes can't be read back");
     for (;;) {
         const zip_int64_t count = zip_source_read(packed.get(), bytes.data(), bytes.size());
         if (count < 0) fail(path, "its bytes can't be read back");
         if (count == 0) break;
-        stream.write(bytes.data(), static_cast<std::streamsize>(count));
+        out.text({bytes.data(), static_cast<std::size_t>(count)});
     }
     zip_source_close(packed.get());
-    stream.close();
-    if (!stream) throw writeError(path.string());
-    file.commit();
+    out.commit();
 }
 
 }  // namespace stratum::exporter

@@ -2,13 +2,11 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
-#include "export/mesh/chunk_writer.h"
 #include "export/mesh/face_groups.h"
 #include "export/mesh/linear_color.h"
 
 #include <fmt/format.h>
 
-#include <fstream>
 #include <limits>
 
 namespace stratum::exporter {
@@ -17,7 +15,7 @@ namespace {
 // A list "[a, b]" in pieces.
 class UsdList {
 public:
-    explicit UsdList(ChunkWriter& out) : out_(out) { out_.text("["); }
+    explicit UsdList(FileWriter& out) : out_(out) { out_.text("["); }
     void add(const std::string& item) {
         if (!first_) out_.text(", ");
         first_ = false;
@@ -26,7 +24,7 @@ public:
     void end() { out_.text("]\n"); }
 
 private:
-    ChunkWriter& out_;
+    FileWriter& out_;
     bool first_ = true;
 };
 
@@ -38,7 +36,7 @@ std::string binding(const std::string& material) {
 
 constexpr const char* kBindingApi = "prepend apiSchemas = [\"MaterialBindingAPI\"]";
 
-void writeUsdPoints(const SurfaceMesh& mesh, ChunkWriter& out) {
+void writeUsdPoints(const SurfaceMesh& mesh, FileWriter& out) {
     openvdb::BBoxd box;
     for (const openvdb::Vec3s& point : mesh.points) box.expand(openvdb::Vec3d(point));
     const openvdb::Vec3s low(mesh.points.empty() ? openvdb::Vec3d(0) : box.min());
@@ -49,7 +47,7 @@ void writeUsdPoints(const SurfaceMesh& mesh, ChunkWriter& out) {
     points.end();
 }
 
-void writeUsdFaces(const SurfaceMesh& mesh, ChunkWriter& out) {
+void writeUsdFaces(const SurfaceMesh& mesh, FileWriter& out) {
     out.text("        int[] faceVertexCounts = ");
     UsdList counts(out);
     for (const SurfaceMesh::Face& face : mesh.faces) counts.add(face[3] == SurfaceMesh::kNone ? "3" : "4");
@@ -62,7 +60,7 @@ void writeUsdFaces(const SurfaceMesh& mesh, ChunkWriter& out) {
     indices.end();
 }
 
-void writeSubsets(const SurfaceMesh& mesh, ChunkWriter& out) {
+void writeSubsets(const SurfaceMesh& mesh, FileWriter& out) {
     for (std::size_t group = 0; group < mesh.materials.size(); ++group) {
         const std::string& name = mesh.materials[group].name;
         out.text(
@@ -104,9 +102,7 @@ void writeUsdMesh(const SurfaceMesh& mesh, const std::filesystem::path& path, co
     if (corners > kMost || mesh.points.size() > kMost)
         throw UsageError(fmt::format("{}: {} corners of faces are more than USD can count; choose a larger voxel",
                                      path.string(), corners));
-    AtomicFile file(path);
-    std::ofstream stream(file.temporary(), std::ios::binary);
-    ChunkWriter out(stream);
+    FileWriter out(path);
     const bool one = mesh.materials.size() == 1;
     out.text(fmt::format(
         "#usda 1.0\n(\n    defaultPrim = \"print\"\n    doc = \"by Stratum {}\"\n    metersPerUnit = {}\n"
@@ -123,10 +119,7 @@ void writeUsdMesh(const SurfaceMesh& mesh, const std::filesystem::path& path, co
         writeSubsets(mesh, out);
     }
     out.text("    }\n" + usdMaterials(mesh.materials, "/print") + "}\n");
-    out.flush();
-    stream.close();
-    if (!stream) throw writeError(path.string());
-    file.commit();
+    out.commit();
 }
 
 }  // namespace stratum::exporter

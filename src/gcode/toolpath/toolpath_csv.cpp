@@ -1,36 +1,18 @@
 #include "gcode/toolpath/toolpath_csv.h"
 
 #include "base/atomic_file.h"
-#include "base/error.h"
 
 #include <fmt/format.h>
 
-#include <cstdio>
 #include <iterator>
-#include <memory>
 
 namespace stratum::gcode {
-namespace {
-
-struct Close {
-    void operator()(std::FILE* file) const { std::fclose(file); }
-};
-
-}  // namespace
 
 void writeToolpathCsv(const Toolpath& toolpath, const std::filesystem::path& path) {
-    constexpr std::size_t kChunk = std::size_t{1} << 18;
-    AtomicFile output(path);
-    std::unique_ptr<std::FILE, Close> file(std::fopen(output.temporary().c_str(), "wb"));
+    FileWriter out(path);
+    out.text(
+        "line,layer,feature,tool,object,x0,y0,z0,x1,y1,z1,center_x,center_y,sweep,width,height,length,volume,speed\n");
     fmt::memory_buffer text;
-    const auto flush = [&] {
-        if (!file || std::fwrite(text.data(), 1, text.size(), file.get()) != text.size())
-            throw writeError(path.string());
-        text.clear();
-    };
-    fmt::format_to(std::back_inserter(text),
-                   "line,layer,feature,tool,object,x0,y0,z0,x1,y1,z1,center_x,center_y,sweep,width,height,length,"
-                   "volume,speed\n");
     for (const Bead& bead : toolpath.beads) {
         const Run& run = toolpath.runOf(bead);
         const double length = beadLength(toolpath, bead);
@@ -45,11 +27,10 @@ void writeToolpathCsv(const Toolpath& toolpath, const std::filesystem::path& pat
         }
         fmt::format_to(std::back_inserter(text), "{},{},{},{},{}\n", bead.width, run.height, length,
                        laidVolume(toolpath, static_cast<std::uint32_t>(&bead - toolpath.beads.data())), run.speed);
-        if (text.size() >= kChunk) flush();
+        out.text({text.data(), text.size()});
+        text.clear();
     }
-    flush();
-    if (std::fclose(file.release()) != 0) throw writeError(path.string());
-    output.commit();
+    out.commit();
 }
 
 }  // namespace stratum::gcode

@@ -10,7 +10,6 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
-#include <fstream>
 
 namespace stratum::shade {
 namespace {
@@ -51,19 +50,12 @@ HalfDiffTable readMerl(std::string_view bytes, std::string_view name) {
 }
 
 void writeMerl(const std::filesystem::path& path, const HalfDiffTable& table) {
-    AtomicFile file(path);
-    std::ofstream out(file.temporary(), std::ios::binary);
-    out.write(reinterpret_cast<const char*>(kSizes.data()), sizeof(kSizes));
-    std::vector<double> channel(HalfDiffTable::kCells);
-    for (std::size_t c = 0; c < 3; ++c) {
-        for (std::size_t n = 0; n < channel.size(); ++n)
-            channel[n] = static_cast<double>(table.values()[n][static_cast<int>(c)]) / kScale[c];
-        out.write(reinterpret_cast<const char*>(channel.data()),
-                  static_cast<std::streamsize>(channel.size() * sizeof(double)));
-    }
-    out.close();
-    if (!out) throw writeError(path.string());
-    file.commit();
+    FileWriter out(path);
+    out.raw(kSizes);
+    for (std::size_t c = 0; c < 3; ++c)
+        for (std::size_t n = 0; n < HalfDiffTable::kCells; ++n)
+            out.raw(static_cast<double>(table.values()[n][static_cast<int>(c)]) / kScale[c]);
+    out.commit();
 }
 
 }  // namespace stratum::shade

@@ -34,13 +34,9 @@ bool FrameRecord::has(const std::filesystem::path& picture, const std::string& s
 
 void FrameRecord::add(const std::filesystem::path& picture, const std::string& scene) {
     entries_[picture.filename().string()] = {scene, sha256Hex(InputFile(picture).bytes())};
-    AtomicFile(path_).write([this](const std::filesystem::path& to) {
-        std::ofstream out(to, std::ios::binary);
-        out << "# by " << kProgramMark << '\n';
-        for (const auto& [name, entry] : entries_) out << entry.scene << ' ' << entry.bytes << ' ' << name << '\n';
-        out.close();
-        if (!out) throw writeError(to.string());
-    });
+    std::string text = std::string("# by ") + kProgramMark + '\n';
+    for (const auto& [name, entry] : entries_) text += entry.scene + ' ' + entry.bytes + ' ' + name + '\n';
+    writeFile(path_, text);
 }
 
 }  // namespace stratum::shade
