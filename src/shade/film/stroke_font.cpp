@@ -1,10 +1,11 @@
 #include "shade/film/stroke_font.h"
 
+#include "base/text.h"
+
 #include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 
@@ -13,100 +14,25 @@ namespace {
 
 // Strokes of each character from '!' to '~', points as a digit for x (0 to 4) and a letter for y (a is 2 below the
 // baseline c, g the height of small letters, i that of capitals). A space lifts the pen.
-constexpr std::array<std::string_view, 94> kStrokes = {"2i2e 2c2c",
-                                                       "1i1h 3i3h",
-                                                       "1c1i 3c3i 0e4e 0g4g",
-                                                       "4h3i1i0h0g1f3f4e4d3c1c0d 2i2c",
-                                                       "0c4i 0h0i1i1h0h 3c3d4d4c3c",
-                                                       "4c1h1i2i2h0e0d1c2c4e",
-                                                       "2i2h",
-                                                       "3i2h2b3a",
-                                                       "1i2h2b1a",
-                                                       "0g4e 0e4g 2h2d",
-                                                       "0e4e 2g2c",
-                                                       "2c1b",
-                                                       "1e3e",
-                                                       "2c2c",
-                                                       "0b4i",
-                                                       "1i2i3h3d2c1c0d0h1i",
-                                                       "1h2i2c 1c3c",
-                                                       "0h1i3i4h4g0c4c",
-                                                       "0h1i3i4h4g3f4e4d3c1c0d 2f3f",
-                                                       "3c3i0e4e",
-                                                       "4i0i0f3f4e4d3c1c0d",
-                                                       "4h3i1i0h0d1c3c4d4e3f1f0e",
-                                                       "0i4i1c",
-                                                       "1f0g0h1i3i4h4g3f1f0e0d1c3c4d4e3f",
-                                                       "0d1c3c4d4h3i1i0h0g1f3f4g",
-                                                       "2c2c 2f2f",
-                                                       "2f2f 2c1b",
-                                                       "4g0e4c",
-                                                       "0d4d 0f4f",
-                                                       "0g4e0c",
-                                                       "0h1i3i4h4g2f2e 2c2c",
-                                                       "4d3c1c0d0h1i3i4h4e2e2g4g",
-                                                       "0c2i4c 1e3e",
-                                                       "0c0i3i4h4g3f0f 3f4e4d3c0c",
-                                                       "4h3i1i0h0d1c3c4d",
-                                                       "0c0i2i4g4e2c0c",
-                                                       "4i0i0c4c 0f3f",
-                                                       "4i0i0c 0f3f",
-                                                       "4h3i1i0h0d1c3c4d4f2f",
-                                                       "0i0c 4i4c 0f4f",
-                                                       "2i2c 1i3i 1c3c",
-                                                       "4i4d3c1c0d",
-                                                       "0i0c 4i0e 1f4c",
-                                                       "0i0c4c",
-                                                       "0c0i2f4i4c",
-                                                       "0c0i4c4i",
-                                                       "1i3i4h4d3c1c0d0h1i",
-                                                       "0c0i3i4h4g3f0f",
-                                                       "1i3i4h4d3c1c0d0h1i 2e4c",
-                                                       "0c0i3i4h4g3f0f 2f4c",
-                                                       "4h3i1i0h0g1f3f4e4d3c1c0d",
-                                                       "0i4i 2i2c",
-                                                       "0i0d1c3c4d4i",
-                                                       "0i2c4i",
-                                                       "0i1c2g3c4i",
-                                                       "0i4c 0c4i",
-                                                       "0i2f4i 2f2c",
-                                                       "0i4i0c4c",
-                                                       "3i2i2a3a",
-                                                       "0i4b",
-                                                       "1i2i2a1a",
-                                                       "0g2i4g",
-                                                       "0b4b",
-                                                       "1i2h",
-                                                       "4g4c 4f3g1g0f0d1c3c4d",
-                                                       "0i0c 0f1g3g4f4d3c1c0d",
-                                                       "4f3g1g0f0d1c3c4d",
-                                                       "4i4c 4f3g1g0f0d1c3c4d",
-                                                       "0e4e4f3g1g0f0d1c3c4d",
-                                                       "3i2i1h1c 0g3g",
-                                                       "4g4b3a1a0b 4f3g1g0f0d1c3c4d",
-                                                       "0i0c 0f1g3g4f4c",
-                                                       "2g2c 2i2i",
-                                                       "2g2b1a0a 2i2i",
-                                                       "0i0c 4g0d 1e4c",
-                                                       "2i2d3c",
-                                                       "0g0c 0f1g2f2c 2f3g4f4c",
-                                                       "0g0c 0f1g3g4f4c",
-                                                       "1g3g4f4d3c1c0d0f1g",
-                                                       "0g0a 0f1g3g4f4d3c1c0d",
-                                                       "4g4a 4f3g1g0f0d1c3c4d",
-                                                       "0g0c 0f1g3g",
-                                                       "4f3g1g0f1e3e4d3c1c0d",
-                                                       "1i1d2c3c 0g3g",
-                                                       "0g0d1c3c4d 4g4c",
-                                                       "0g2c4g",
-                                                       "0g1c2f3c4g",
-                                                       "0g4c 0c4g",
-                                                       "0g2c 4g1a",
-                                                       "0g4g0c4c",
-                                                       "3i2h2g1f2e2b3a",
-                                                       "2i2a",
-                                                       "1i2h2g3f2e2b1a",
-                                                       "0f1g3e4f"};
+constexpr std::string_view kStrokes =
+    "2i2e 2c2c|1i1h 3i3h|1c1i 3c3i 0e4e 0g4g|4h3i1i0h0g1f3f4e4d3c1c0d 2i2c|0c4i 0h0i1i1h0h 3c3d4d4c3c|"
+    "4c1h1i2i2h0e0d1c2c4e|2i2h|3i2h2b3a|1i2h2b1a|0g4e 0e4g 2h2d|0e4e 2g2c|2c1b|1e3e|2c2c|0b4i|1i2i3h3d2c1c0d0h1i|"
+    "1h2i2c 1c3c|0h1i3i4h4g0c4c|0h1i3i4h4g3f4e4d3c1c0d 2f3f|3c3i0e4e|4i0i0f3f4e4d3c1c0d|4h3i1i0h0d1c3c4d4e3f1f0e|"
+    "0i4i1c|1f0g0h1i3i4h4g3f1f0e0d1c3c4d4e3f|0d1c3c4d4h3i1i0h0g1f3f4g|2c2c 2f2f|2f2f 2c1b|4g0e4c|0d4d 0f4f|0g4e0c|"
+    "0h1i3i4h4g2f2e 2c2c|4d3c1c0d0h1i3i4h4e2e2g4g|0c2i4c 1e3e|0c0i3i4h4g3f0f 3f4e4d3c0c|4h3i1i0h0d1c3c4d|"
+    "0c0i2i4g4e2c0c|4i0i0c4c 0f3f|4i0i0c 0f3f|4h3i1i0h0d1c3c4d4f2f|0i0c 4i4c 0f4f|2i2c 1i3i 1c3c|4i4d3c1c0d|"
+    "0i0c 4i0e 1f4c|0i0c4c|0c0i2f4i4c|0c0i4c4i|1i3i4h4d3c1c0d0h1i|0c0i3i4h4g3f0f|1i3i4h4d3c1c0d0h1i 2e4c|"
+    "0c0i3i4h4g3f0f 2f4c|4h3i1i0h0g1f3f4e4d3c1c0d|0i4i 2i2c|0i0d1c3c4d4i|0i2c4i|0i1c2g3c4i|0i4c 0c4i|0i2f4i 2f2c|"
+    "0i4i0c4c|3i2i2a3a|0i4b|1i2i2a1a|0g2i4g|0b4b|1i2h|4g4c 4f3g1g0f0d1c3c4d|0i0c 0f1g3g4f4d3c1c0d|4f3g1g0f0d1c3c4d|"
+    "4i4c 4f3g1g0f0d1c3c4d|0e4e4f3g1g0f0d1c3c4d|3i2i1h1c 0g3g|4g4b3a1a0b 4f3g1g0f0d1c3c4d|0i0c 0f1g3g4f4c|2g2c 2i2i|"
+    "2g2b1a0a 2i2i|0i0c 4g0d 1e4c|2i2d3c|0g0c 0f1g2f2c 2f3g4f4c|0g0c 0f1g3g4f4c|1g3g4f4d3c1c0d0f1g|"
+    "0g0a 0f1g3g4f4d3c1c0d|4g4a 4f3g1g0f0d1c3c4d|0g0c 0f1g3g|4f3g1g0f1e3e4d3c1c0d|1i1d2c3c 0g3g|0g0d1c3c4d 4g4c|"
+    "0g2c4g|0g1c2f3c4g|0g4c 0c4g|0g2c 4g1a|0g4g0c4c|3i2h2g1f2e2b3a|2i2a|1i2h2g3f2e2b1a|0f1g3e4f";
+
+std::string_view strokesOf(std::size_t character) {
+    static const std::vector<std::string_view> strokes = split(kStrokes, '|');
+    return strokes[character];
+}
 
 constexpr float kUnits = 6.0f;  // of a capital's height
 constexpr float kGap = 1.9f;    // from one character to the next
@@ -123,7 +49,7 @@ void eachCharacter(std::string_view text, const F& f) {
         if (byte == ' ')
             f(std::string_view());
         else
-            f(kStrokes[byte > ' ' && byte < 0x7f ? byte - std::size_t{'!'} : std::size_t{'?' - '!'}]);
+            f(strokesOf(byte > ' ' && byte < 0x7f ? byte - std::size_t{'!'} : std::size_t{'?' - '!'}));
     }
 }
 
