@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstring>
 #include <string>
+#include <type_traits>
 
 namespace stratum::python {
 
@@ -17,11 +18,22 @@ namespace {
 
 struct Field {
     const char* name;
-    const char* type;
+    std::string type;
     std::size_t offset;
 };
 
-py::dtype typeOf(std::initializer_list<Field> fields, std::size_t size) {
+// With NumPy's letter and bytes of the number.
+template <typename Number>
+Field fieldOf(const char* name, std::size_t offset) {
+    constexpr bool kReal = std::is_floating_point_v<Number> || std::is_same_v<Number, gcode::PackedDouble>;
+    constexpr const char* kLetter = kReal ? "f" : std::is_signed_v<Number> ? "i" : "u";
+    return {name, fmt::format("{}{}{}", sizeof(Number) > 1 ? "<" : "", kLetter, sizeof(Number)), offset};
+}
+
+#define FIELD(name) fieldOf<decltype(Record::name)>(#name, offsetof(Record, name))
+
+template <typename Record>
+py::dtype typeOf(std::initializer_list<Field> fields) {
     py::list names;
     py::list formats;
     py::list offsets;
@@ -30,7 +42,7 @@ py::dtype typeOf(std::initializer_list<Field> fields, std::size_t size) {
         formats.append(field.type);
         offsets.append(field.offset);
     }
-    return {names, formats, offsets, static_cast<py::ssize_t>(size)};
+    return {names, formats, offsets, static_cast<py::ssize_t>(sizeof(Record))};
 }
 
 std::string shapeOf(const py::array& array) {
@@ -54,80 +66,41 @@ void refuseMasked(const py::handle& array, std::string_view name) {
 
 template <>
 py::dtype recordType<gcode::Bead>() {
-    using gcode::Bead;
-    return typeOf({{"x0", "<f8", offsetof(Bead, x0)},
-                   {"y0", "<f8", offsetof(Bead, y0)},
-                   {"z0", "<f8", offsetof(Bead, z0)},
-                   {"x1", "<f8", offsetof(Bead, x1)},
-                   {"y1", "<f8", offsetof(Bead, y1)},
-                   {"z1", "<f8", offsetof(Bead, z1)},
-                   {"width", "<f4", offsetof(Bead, width)},
-                   {"run", "<u4", offsetof(Bead, run)},
-                   {"arc", "<i4", offsetof(Bead, arc)}},
-                  sizeof(Bead));
+    using Record = gcode::Bead;
+    return typeOf<Record>(
+        {FIELD(x0), FIELD(y0), FIELD(z0), FIELD(x1), FIELD(y1), FIELD(z1), FIELD(width), FIELD(run), FIELD(arc)});
 }
 
 template <>
 py::dtype recordType<gcode::Run>() {
-    using gcode::Run;
-    return typeOf({{"height", "<f4", offsetof(Run, height)},
-                   {"speed", "<f4", offsetof(Run, speed)},
-                   {"layer", "<u4", offsetof(Run, layer)},
-                   {"object", "<u2", offsetof(Run, object)},
-                   {"tool", "u1", offsetof(Run, tool)},
-                   {"feature", "u1", offsetof(Run, feature)}},
-                  sizeof(Run));
+    using Record = gcode::Run;
+    return typeOf<Record>({FIELD(height), FIELD(speed), FIELD(layer), FIELD(object), FIELD(tool), FIELD(feature)});
 }
 
 template <>
 py::dtype recordType<gcode::Arc>() {
-    using gcode::Arc;
-    return typeOf({{"center_x", "<f8", offsetof(Arc, center_x)},
-                   {"center_y", "<f8", offsetof(Arc, center_y)},
-                   {"sweep", "<f8", offsetof(Arc, sweep)},
-                   {"line", "<u4", offsetof(Arc, line)}},
-                  sizeof(Arc));
+    using Record = gcode::Arc;
+    return typeOf<Record>({FIELD(center_x), FIELD(center_y), FIELD(sweep), FIELD(line)});
 }
 
 template <>
 py::dtype recordType<gcode::BeadTiming>() {
-    using gcode::BeadTiming;
-    return typeOf({{"start", "<f8", offsetof(BeadTiming, start)},
-                   {"seconds", "<f4", offsetof(BeadTiming, seconds)},
-                   {"entry", "<f4", offsetof(BeadTiming, entry)},
-                   {"peak", "<f4", offsetof(BeadTiming, peak)},
-                   {"exit", "<f4", offsetof(BeadTiming, exit)}},
-                  sizeof(BeadTiming));
+    using Record = gcode::BeadTiming;
+    return typeOf<Record>({FIELD(start), FIELD(seconds), FIELD(entry), FIELD(peak), FIELD(exit)});
 }
 
 template <>
 py::dtype recordType<gcode::BeadFlow>() {
-    using gcode::BeadFlow;
-    return typeOf({{"volume", "<f4", offsetof(BeadFlow, volume)},
-                   {"rate", "<f4", offsetof(BeadFlow, rate)},
-                   {"widening", "<f4", offsetof(BeadFlow, widening)}},
-                  sizeof(BeadFlow));
+    using Record = gcode::BeadFlow;
+    return typeOf<Record>({FIELD(volume), FIELD(rate), FIELD(widening)});
 }
 
 template <>
 py::dtype recordType<motion::Travel>() {
-    using motion::Travel;
-    return typeOf({{"x0", "<f8", offsetof(Travel, x0)},
-                   {"y0", "<f8", offsetof(Travel, y0)},
-                   {"z0", "<f8", offsetof(Travel, z0)},
-                   {"x1", "<f8", offsetof(Travel, x1)},
-                   {"y1", "<f8", offsetof(Travel, y1)},
-                   {"z1", "<f8", offsetof(Travel, z1)},
-                   {"center_x", "<f8", offsetof(Travel, center_x)},
-                   {"center_y", "<f8", offsetof(Travel, center_y)},
-                   {"start", "<f8", offsetof(Travel, start)},
-                   {"sweep", "<f4", offsetof(Travel, sweep)},
-                   {"seconds", "<f4", offsetof(Travel, seconds)},
-                   {"speed", "<f4", offsetof(Travel, speed)},
-                   {"filament", "<f4", offsetof(Travel, filament)},
-                   {"bead", "<u4", offsetof(Travel, bead)},
-                   {"line", "<u4", offsetof(Travel, line)}},
-                  sizeof(Travel));
+    using Record = motion::Travel;
+    return typeOf<Record>({FIELD(x0), FIELD(y0), FIELD(z0), FIELD(x1), FIELD(y1), FIELD(z1), FIELD(center_x),
+                           FIELD(center_y), FIELD(start), FIELD(sweep), FIELD(seconds), FIELD(speed), FIELD(filament),
+                           FIELD(bead), FIELD(line)});
 }
 
 py::array viewOf(const py::dtype& type, const std::vector<py::ssize_t>& shape, const void* data,
