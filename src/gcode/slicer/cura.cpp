@@ -112,9 +112,9 @@ namespace {
 
 constexpr double kNone = 500;  // mm/s; Cura's own "no limit" is the speed of light
 
-// Machines whose letters and digits, in lower case, begin with `name`. The first that fits counts.
+// Machines whose letters and digits, in lower case, begin with one of `names`. The first that fits counts.
 struct Machines {
-    std::string_view name;
+    std::string_view names;                                                               // between bars
     std::array<double, kMotionAxes> speed;                                                // mm/s
     double x_acceleration, y_acceleration, z_acceleration, e_acceleration, acceleration;  // mm/s^2
     double xy_jerk, z_jerk, e_jerk;                                                       // mm/s
@@ -124,18 +124,8 @@ struct Machines {
 constexpr std::array kMachines{
     Machines{"k1",                     {800, 800, kNone, kNone}, 20000, 20000, 500, 5000, 20000, 20, .4, 5},
     Machines{"crealitycrx",            {kNone, kNone, kNone, kNone}, 500, 500, 100, 5000, 4000, 5, .4, 5},
-    Machines{"creality",               {500, 500, 10, 50}, 500, 500, 100, 5000, 500, 10, .4, 5},
-    Machines{"creawsome",              {500, 500, 10, 50}, 500, 500, 100, 5000, 500, 10, .4, 5},
-    Machines{"anet",                   {500, 500, 10, 50}, 500, 500, 100, 5000, 500, 10, .4, 5},
-    Machines{"artillery",              {500, 500, 10, 50}, 500, 500, 100, 5000, 500, 10, .4, 5},
-    Machines{"blvmgncube",             {500, 500, 10, 50}, 500, 500, 100, 5000, 500, 10, .4, 5},
-    Machines{"goofoo",                 {500, 500, 10, 50}, 500, 500, 100, 5000, 500, 10, .4, 5},
-    Machines{"longer",                 {500, 500, 10, 50}, 500, 500, 100, 5000, 500, 10, .4, 5},
-    Machines{"mingda",                 {500, 500, 10, 50}, 500, 500, 100, 5000, 500, 10, .4, 5},
-    Machines{"renkforce",              {500, 500, 10, 50}, 500, 500, 100, 5000, 500, 10, .4, 5},
-    Machines{"weedo",                  {500, 500, 10, 50}, 500, 500, 100, 5000, 500, 10, .4, 5},
-    Machines{"sv01",                   {500, 500, 10, 50}, 500, 500, 100, 5000, 500, 10, .4, 5},
-    Machines{"sv03",                   {500, 500, 10, 50}, 500, 500, 100, 5000, 500, 10, .4, 5},
+    Machines{"creality|creawsome|anet|artillery|blvmgncube|goofoo|longer|mingda|renkforce|weedo|sv01|sv03",
+                                       {500, 500, 10, 50}, 500, 500, 100, 5000, 500, 10, .4, 5},
     Machines{"sv02",                   {500, 500, 10, 50}, 500, 500, 100, 500, 500, 5, .4, 5},
     Machines{"biqu",                   {500, 500, 10, 75}, 500, 500, 100, 5000, 500, 10, .4, 5},
     Machines{"anycubicmegazero",       {500, 500, 5, 30}, 500, 500, 100, 5000, 500, 10, .4, 5},
@@ -155,24 +145,18 @@ constexpr std::array kMachines{
     Machines{"tronxyxy2pro",           {100, 100, 20, 120}, 120, 120, 120, 120, 150, 20, .4, 5},
     Machines{"tronxyxy",               {100, 100, 20, 120}, 150, 150, 150, 150, 80, 20, .4, 5},
     Machines{"geeetecha30",            {300, 300, 7, 50}, 2000, 2000, 100, 10000, 2000, 10, 1, 5},
-    Machines{"geeetecha",              {kNone, kNone, 12, 120}, 9000, 9000, 500, 10000, 1000, 10, .2, 2.5},
-    Machines{"prusai3mk",              {kNone, kNone, 12, 120}, 9000, 9000, 500, 10000, 1000, 10, .2, 2.5},
+    Machines{"geeetecha|prusai3mk", {kNone, kNone, 12, 120}, 9000, 9000, 500, 10000, 1000, 10, .2, 2.5},
     Machines{"snapmaker",              {kNone, kNone, kNone, kNone}, 1000, 1000, 1000, 1000, 1000, 20, .4, 5},
-    Machines{"monopriceselectmini",    {150, 150, 1.5, 100}, 800, 800, 20, 10000, 4000, 20, .4, 5},
-    Machines{"malyanm200",             {150, 150, 1.5, 100}, 800, 800, 20, 10000, 4000, 20, .4, 5},
+    Machines{"monopriceselectmini|malyanm200", {150, 150, 1.5, 100}, 800, 800, 20, 10000, 4000, 20, .4, 5},
     Machines{"monopriceultimate",      {kNone, kNone, kNone, kNone}, 3000, 3000, 100, 500, 800, 10, .4, 1},
     Machines{"printrbotplay",          {125, 125, 5, kNone}, 2000, 2000, 30, 10000, 4000, 20, .4, 5},
     Machines{"dagomadisco",            {500, 500, 4, 170}, 3000, 1000, 20, 10000, 3000, 20, .4, 5},
-    Machines{"xyzprinting",            {500, 500, 10, 50}, 1500, 1500, 500, 5000, 500, 10, .4, 5},
-    Machines{"flashforgedreamer",      {500, 500, 10, 50}, 1500, 1500, 500, 5000, 500, 10, .4, 5},
-    Machines{"dreamernx",              {500, 500, 10, 50}, 1500, 1500, 500, 5000, 500, 10, .4, 5},
+    Machines{"xyzprinting|flashforgedreamer|dreamernx", {500, 500, 10, 50}, 1500, 1500, 500, 5000, 500, 10, .4, 5},
     Machines{"lulzbotmini2",           {800, 800, 8, 40}, 9000, 9000, 100, 1000, 1000, 20, .4, 5},
     Machines{"lulzbottazpro",          {800, 800, 3, 40}, 9000, 9000, 100, 1000, 500, 20, .4, 5},
     Machines{"leapfrogboltpro",        {kNone, kNone, 16.7, 50}, 9000, 9000, 100, 10000, 400, 20, .4, 5},
     Machines{"ultimakeroriginal",      {kNone, kNone, kNone, 45}, 9000, 9000, 100, 10000, 4000, 20, .4, 5},
-    Machines{"ultimaker2",             {300, 300, 40, 45}, 9000, 9000, 100, 10000, 3000, 20, .4, 5},
-    Machines{"ultimaker3",             {300, 300, 40, 45}, 9000, 9000, 100, 10000, 3000, 20, .4, 5},
-    Machines{"ultimakers",             {300, 300, 40, 45}, 9000, 9000, 100, 10000, 3000, 20, .4, 5},
+    Machines{"ultimaker2|ultimaker3|ultimakers", {300, 300, 40, 45}, 9000, 9000, 100, 10000, 3000, 20, .4, 5},
 };
 constexpr Machines kAnyMachine{"",     {kNone, kNone, kNone, kNone}, 9000, 9000, 100, 10000, 4000, 20, .4, 5};
 // clang-format on
@@ -182,7 +166,8 @@ const Machines* machinesNamed(std::string_view machine) {
     for (const char c : machine)
         if (isLetter(c) || (c >= '0' && c <= '9')) plain += lowerCase(c);
     const auto* found = std::find_if(kMachines.begin(), kMachines.end(), [&](const Machines& one) {
-        return std::string_view(plain).starts_with(one.name);
+        const auto names = split(one.names, '|');
+        return std::any_of(names.begin(), names.end(), [&](std::string_view name) { return plain.starts_with(name); });
     });
     return found == kMachines.end() ? nullptr : found;
 }
