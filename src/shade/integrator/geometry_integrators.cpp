@@ -10,27 +10,26 @@ constexpr float kMostLabel = 1e9f;
 
 }  // namespace
 
-Pixel NormalIntegrator::seen(const trace::Ray&, const SurfacePoint* first, TraceContext&) const {
+Pixel seenNormal(const Surfaces& surfaces, const SurfacePoint* first) {
     if (first == nullptr) return {};
-    const float alpha = 1.0f - surfaces_.fade(*first);
+    const float alpha = 1.0f - surfaces.fade(*first);
     return {glm::vec3(first->normal) * alpha, alpha};
 }
 
-Pixel DepthIntegrator::seen(const trace::Ray&, const SurfacePoint* first, TraceContext&) const {
+Pixel seenDepth(const Surfaces& surfaces, const SurfacePoint* first) {
     if (first == nullptr) return {};
-    const float alpha = 1.0f - surfaces_.fade(*first);
+    const float alpha = 1.0f - surfaces.fade(*first);
     // At grazing angles the distance to the bed can overflow: 0 times that must be 0.
     return alpha > 0.0f ? Pixel{Color(static_cast<float>(first->t)) * alpha, alpha} : Pixel{};
 }
 
-Pixel PositionIntegrator::seen(const trace::Ray&, const SurfacePoint* first, TraceContext&) const {
+Pixel seenPosition(const Surfaces& surfaces, const SurfacePoint* first) {
     if (first == nullptr) return {};
-    const SurfacePoint& point = *first;
-    const float alpha = 1.0f - surfaces_.fade(point);
-    return {alpha * Color(point.position), alpha};
+    const float alpha = 1.0f - surfaces.fade(*first);
+    return {alpha * Color(first->position), alpha};
 }
 
-Pixel MaskIntegrator::seen(const trace::Ray&, const SurfacePoint* first, TraceContext&) const {
+Pixel seenMask(const Surfaces&, const SurfacePoint* first) {
     if (first == nullptr || first->bed) return {};
     return {Color(1.0f), 1.0f};
 }
