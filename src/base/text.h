@@ -2,8 +2,11 @@
 #pragma once
 
 #include <algorithm>
+#include <charconv>
+#include <optional>
 #include <string>
 #include <string_view>
+#include <system_error>
 #include <vector>
 
 namespace stratum {
@@ -34,6 +37,16 @@ inline std::string lowerCase(std::string text) {
 inline std::string upperCase(std::string text) {
     std::transform(text.begin(), text.end(), text.begin(), [](char c) { return upperCase(c); });
     return text;
+}
+
+/// The number that the whole text is; nothing if it is none, or does not fit.
+/// @param base  of whole numbers, 10 by default
+template <typename Number, typename... Base>
+std::optional<Number> parsed(std::string_view text, Base... base) {
+    Number value{};
+    const char* const last = text.data() + text.size();
+    const auto [end, error] = std::from_chars(text.data(), last, value, base...);
+    return error == std::errc{} && end == last ? std::optional(value) : std::nullopt;
 }
 
 /// The pieces between separators: at least one, which may be empty.

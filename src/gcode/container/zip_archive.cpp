@@ -1,13 +1,13 @@
 #include "gcode/container/zip_archive.h"
 
 #include "base/error.h"
+#include "base/text.h"
 #include "gcode/container/gzip.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <map>
 #include <string>
 #include <system_error>
@@ -34,9 +34,7 @@ int plateNumber(std::string_view entry) {
     constexpr auto after = ".gcode"sv;
     if (!entry.starts_with(before) || !entry.ends_with(after) || entry.size() <= before.size() + after.size()) return 0;
     const std::string_view digits = entry.substr(before.size(), entry.size() - before.size() - after.size());
-    int number = 0;
-    const auto [end, status] = std::from_chars(digits.data(), digits.data() + digits.size(), number);
-    return status == std::errc() && end == digits.data() + digits.size() && number > 0 ? number : 0;
+    return std::max(parsed<int>(digits).value_or(0), 0);
 }
 
 std::string listPlates(const std::vector<ZipPlate>& plates) {

@@ -48,12 +48,6 @@ constexpr std::string_view kHarmlessM =
     // MKS: pictures in a comment; Ultimaker: pauses and calibrations
     "10086 12000-12001";
 
-std::size_t numberOf(std::string_view digits) {
-    std::size_t number = 0;
-    for (const char digit : digits) number = 10 * number + static_cast<std::size_t>(digit - '0');
-    return number;
-}
-
 constexpr std::size_t kMostCodes = 12288;
 using Codes = std::bitset<kMostCodes>;
 
@@ -61,7 +55,8 @@ Codes codesOf(std::string_view ranges) {
     Codes codes;
     for (const std::string_view range : split(ranges, ' ')) {
         const std::vector<std::string_view> ends = split(range, '-');
-        for (std::size_t code = numberOf(ends.front()); code <= numberOf(ends.back()); ++code) codes.set(code);
+        const auto last = parsed<std::size_t>(ends.back());
+        for (auto code = parsed<std::size_t>(ends.front()); code <= last; ++*code) codes.set(*code);
     }
     return codes;
 }

@@ -9,9 +9,7 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cstdint>
-#include <system_error>
 
 namespace stratum::gcode {
 namespace {
@@ -21,9 +19,7 @@ constexpr std::array<std::string_view, 4> kCodingNames = {"PNG", "JPG", "QOI", "
 // A whole number of digits alone; -1 for other texts.
 long numberOf(std::string_view text) {
     if (text.empty() || text.find_first_not_of("0123456789") != std::string_view::npos) return -1;
-    long value = 0;
-    const auto [end, status] = std::from_chars(text.data(), text.data() + text.size(), value);
-    return status == std::errc() && end == text.data() + text.size() ? value : kMostThumbnailSide + 1L;
+    return parsed<long>(text).value_or(kMostThumbnailSide + 1L);
 }
 
 ThumbnailCoding codingOf(std::string_view text, std::string_view whole) {

@@ -5,9 +5,7 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
 #include <cmath>
-#include <system_error>
 
 namespace stratum::shade {
 
@@ -17,11 +15,10 @@ Preset parsePreset(std::string_view text, std::string_view option) {
     preset.name = text.substr(0, colon);
     if (colon == std::string_view::npos) return preset;
     for (const std::string_view word : split(text.substr(colon + 1))) {
-        float value = 0.0f;
-        const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-        if (error != std::errc() || end != word.data() + word.size() || !std::isfinite(value))
+        const auto value = parsed<float>(word);
+        if (!value || !std::isfinite(*value))
             throw UsageError(fmt::format("{} {}: '{}' is not a number; write e.g. 0.25", option, text, word));
-        preset.values.push_back(value);
+        preset.values.push_back(*value);
     }
     return preset;
 }

@@ -8,7 +8,6 @@
 #include <glm/common.hpp>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <cstdint>
 
@@ -45,12 +44,10 @@ constexpr std::string_view kNames =
 
 std::optional<std::uint32_t> parseHex(std::string_view digits) {
     if (digits.size() != 3 && digits.size() != 6) return std::nullopt;
-    std::uint32_t value = 0;
-    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value, 16);
-    if (error != std::errc() || end != digits.data() + digits.size()) return std::nullopt;
-    if (digits.size() == 6) return value;
+    const auto value = parsed<std::uint32_t>(digits, 16);
+    if (!value || digits.size() == 6) return value;
     // #abc is #aabbcc.
-    return 0x11U * ((value & 0xf00U) << 8 | (value & 0x0f0U) << 4 | (value & 0x00fU));
+    return 0x11U * ((*value & 0xf00U) << 8 | (*value & 0x0f0U) << 4 | (*value & 0x00fU));
 }
 
 // Color in the picture over reflectance of the body in the studio's light: about 1 on horizontal faces, less on

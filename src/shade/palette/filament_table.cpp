@@ -10,7 +10,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cstddef>
 #include <optional>
 #include <utility>
@@ -21,21 +20,8 @@ namespace {
 constexpr std::size_t kColumns = 7;
 constexpr std::array<std::string_view, 5> kFinishes{"plain", "matte", "glossy", "silk", "glitter"};
 
-// UTF-8 of accented letters, and what they are looked up as.
-constexpr std::array<std::pair<std::string_view, std::string_view>, 14> kFolded{{{"ä", "a"},
-                                                                                 {"ö", "o"},
-                                                                                 {"ü", "u"},
-                                                                                 {"Ä", "a"},
-                                                                                 {"Ö", "o"},
-                                                                                 {"Ü", "u"},
-                                                                                 {"ß", "ss"},
-                                                                                 {"á", "a"},
-                                                                                 {"é", "e"},
-                                                                                 {"è", "e"},
-                                                                                 {"í", "i"},
-                                                                                 {"ó", "o"},
-                                                                                 {"ú", "u"},
-                                                                                 {"ç", "c"}}};
+// UTF-8 of accented letters, of two bytes each, and behind them what they are looked up as.
+constexpr std::string_view kFolded = "äa öo üu Äa Öo Üu ßss áa ée èe íi óo úu çc";
 
 bool isWordByte(char c) { return isLetter(c) || (c >= '0' && c <= '9') || c == '+'; }
 
@@ -55,10 +41,7 @@ std::optional<std::uint32_t> colorOf(std::string_view hex) {
     }
     // The table has both orders. Those of its rows whose alpha is last end in 22 or 88; it is not used.
     if (hex.size() == 8) hex = hex.ends_with("22") || hex.ends_with("88") ? hex.substr(0, 6) : hex.substr(2);
-    std::uint32_t color = 0;
-    const auto [end, error] = std::from_chars(hex.data(), hex.data() + hex.size(), color, 16);
-    if (hex.size() != 6 || error != std::errc{} || end != hex.data() + hex.size()) return std::nullopt;
-    return color;
+    return hex.size() == 6 ? parsed<std::uint32_t>(hex, 16) : std::nullopt;
 }
 
 Finish finishOf(const Filament& filament, std::string_view stated, std::string_view pattern) {
@@ -85,10 +68,10 @@ std::vector<std::string> wordsOf(std::string_view text) {
             plain = lowerCase(text.front());
             letters = plain;
         } else {
-            for (const auto& [accented, folded] : kFolded)
-                if (text.starts_with(accented)) {
-                    letters = folded;
-                    taken = accented.size();
+            for (const std::string_view folded : split(kFolded, ' '))
+                if (text.starts_with(folded.substr(0, 2))) {
+                    letters = folded.substr(2);
+                    taken = 2;
                 }
         }
         text.remove_prefix(taken);

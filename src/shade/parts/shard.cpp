@@ -1,12 +1,12 @@
 #include "shade/parts/shard.h"
 
 #include "base/error.h"
+#include "base/text.h"
 #include "shade/integrator/render.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cstdint>
 #include <limits>
 #include <optional>
@@ -15,13 +15,6 @@ namespace stratum::shade {
 namespace {
 
 constexpr int kMostShards = 1'000'000;
-
-std::optional<int> numberOf(std::string_view text) {
-    int value = 0;
-    const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (error != std::errc{} || stop != text.data() + text.size()) return std::nullopt;
-    return value;
-}
 
 /// Bands of tile rows, each cut into some of the pieces.
 struct Bands {
@@ -54,8 +47,8 @@ Bands bandsOf(int bands, int rows, int columns, int count, bool by_pieces) {
 
 Shard parseShard(std::string_view text) {
     const std::size_t slash = text.find('/');
-    const auto index = numberOf(text.substr(0, slash));
-    const auto count = slash == std::string_view::npos ? std::nullopt : numberOf(text.substr(slash + 1));
+    const auto index = parsed<int>(text.substr(0, slash));
+    const auto count = slash == std::string_view::npos ? std::nullopt : parsed<int>(text.substr(slash + 1));
     if (!index || !count)
         throw UsageError(fmt::format(
             "--shard {}: expected I/N, e.g. 0/8 for the first of eight, slurm, or slurm/N in an array", text));
@@ -67,14 +60,14 @@ Shard parseShard(std::string_view text) {
 }
 
 Shard shardOf(const SlurmArray& array) {
-    const auto id = numberOf(array.id);
-    const auto least = numberOf(array.least);
-    const auto count = numberOf(array.count);
+    const auto id = parsed<int>(array.id);
+    const auto least = parsed<int>(array.least);
+    const auto count = parsed<int>(array.count);
     if (!id || !least || !count)
         throw UsageError(
             "--shard slurm: SLURM_ARRAY_TASK_ID, _MIN and _COUNT are not set; run it as a task of an array (sbatch "
             "--array=0-7), or give --shard I/N");
-    const auto most = numberOf(array.most);
+    const auto most = parsed<int>(array.most);
     if (*id < *least || *id - *least >= *count || (most && *most - *least + 1 != *count))
         throw UsageError(fmt::format(
             "--shard slurm: the array of {} tasks from {} has gaps; for some of N shards give --shard slurm/N, for all "

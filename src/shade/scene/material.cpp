@@ -2,6 +2,7 @@
 
 #include "base/category_colors.h"
 #include "base/error.h"
+#include "base/text.h"
 #include "shade/finish/named_brdf.h"
 #include "shade/palette/filament_color.h"
 
@@ -11,7 +12,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <span>
 #include <string_view>
@@ -49,9 +49,7 @@ constexpr std::array<FeatureColor, 14> kFeatureColors = {{{"perimeter", 0xe8cf3d
 
 /// The number of a key of `each`: itself, or the index of a name.
 int valueOf(const std::string& key, const MaterialOptions& options, const trace::AttributeSummary& summary) {
-    int value = 0;
-    const auto [end, error] = std::from_chars(key.data(), key.data() + key.size(), value);
-    if (error == std::errc() && end == key.data() + key.size()) return value;
+    if (const auto value = parsed<int>(key)) return *value;
     const auto found = std::find(summary.labels.begin(), summary.labels.end(), key);
     if (found == summary.labels.end()) {
         std::string known;

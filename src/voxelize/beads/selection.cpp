@@ -9,20 +9,11 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <set>
 #include <tuple>
 
 namespace stratum::voxelize {
 namespace {
-
-template <typename Number>
-std::optional<Number> parseNumber(std::string_view text) {
-    Number value{};
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
-    return value;
-}
 
 // By layer, the index after the last bead of that layer and those below. One pass over the beads for all layers.
 std::vector<std::size_t> endsOfLayers(const gcode::Toolpath& toolpath) {
@@ -123,7 +114,7 @@ std::optional<Cut> momentOf(std::string_view text, const gcode::Toolpath& toolpa
     constexpr std::array<double, 3> kSeconds{1, 60, 3600};
     const std::size_t unit = text.empty() ? std::string_view::npos : kUnits.find(text.back());
     const bool named = unit != std::string_view::npos;
-    const auto value = parseNumber<double>(named ? text.substr(0, text.size() - 1) : text);
+    const auto value = parsed<double>(named ? text.substr(0, text.size() - 1) : text);
     if (!value || !(*value > 0 && *value < 1e9)) return std::nullopt;
     const bool share = named && unit == kSeconds.size();
     if (share && *value > 100) return std::nullopt;
@@ -151,7 +142,7 @@ void parseLayers(std::string_view text, Selection& selection) {
     const auto parts = split(text, ':');
     const auto number = [&](std::string_view part, std::uint32_t fallback) {
         if (part.empty()) return fallback;
-        const auto value = parseNumber<std::uint32_t>(part);
+        const auto value = parsed<std::uint32_t>(part);
         if (!value) throw UsageError(fmt::format("--layers {}: expected A:B with whole numbers, e.g. 1:40", text));
         return *value;
     };
@@ -191,7 +182,7 @@ void chooseObject(std::string_view name_or_number, const gcode::Toolpath& toolpa
     const auto& objects = toolpath.objects;
     const auto named = std::find(objects.begin() + 1, objects.end(), name_or_number);
     if (named != objects.end()) return selection.objects.push_back(static_cast<std::uint16_t>(named - objects.begin()));
-    const auto number = parseNumber<std::uint16_t>(name_or_number);
+    const auto number = parsed<std::uint16_t>(name_or_number);
     if (number && *number < objects.size()) return selection.objects.push_back(*number);
     if (objects.size() == 1)
         throw UsageError(
@@ -263,19 +254,19 @@ std::vector<Snapshot> parseSnapshots(std::string_view text, const gcode::Toolpat
                 option, part, toolpath.layer_count, toolpath.beads.size()));
         };
         if (part.ends_with('%') && !part.starts_with("time:")) {
-            const auto percent = parseNumber<double>(part.substr(0, part.size() - 1));
+            const auto percent = parsed<double>(part.substr(0, part.size() - 1));
             if (!percent || !(*percent > 0 && *percent <= 100)) throw bad();
             cuts.push_back({Cut::Kind::percent, *percent, endOfShare(toolpath, *percent / 100)});
         } else if (part.starts_with("layer:")) {
-            const auto layer = parseNumber<std::uint32_t>(part.substr(6));
+            const auto layer = parsed<std::uint32_t>(part.substr(6));
             if (!layer || *layer > toolpath.layer_count) throw bad();
             cuts.push_back({Cut::Kind::layer, static_cast<double>(*layer), endOfLayer(*layer)});
         } else if (part.starts_with("bead:")) {
-            const auto count = parseNumber<std::uint32_t>(part.substr(5));
+            const auto count = parsed<std::uint32_t>(part.substr(5));
             if (!count || *count == 0 || *count > toolpath.beads.size()) throw bad();
             cuts.push_back({Cut::Kind::bead, static_cast<double>(*count), *count});
         } else if (part.starts_with("every:")) {
-            const auto step = parseNumber<std::uint32_t>(part.substr(6));
+            const auto step = parsed<std::uint32_t>(part.substr(6));
             if (!step || *step == 0) throw bad();
             for (std::uint64_t layer = *step; layer <= toolpath.layer_count; layer += *step)
                 cuts.push_back(
