@@ -188,98 +188,71 @@ py::list warningsOf(const gcode::Toolpath& toolpath) {
     return warnings;
 }
 
-const ToolpathObject& objectOf(const py::object& self) { return self.cast<const ToolpathObject&>(); }
-
-// Those that are there if they were asked for.
-void addAskedArrays(py::class_<ToolpathObject>& type) {
-    type.def_property_readonly(
-            "timing",
-            [](const py::object& self) -> py::object {
-                const gcode::Toolpath& toolpath = *objectOf(self).toolpath;
-                if (toolpath.timing.empty()) return py::none();
-                return viewOf(toolpath.timing, self);
-            },
-            "Read-only array of timing_dtype by bead, without a copy: s since the program's begin, s, mm/s. None "
-            "unless read with timed=True or flow_lag.")
-        .def_property_readonly(
-            "flow",
-            [](const py::object& self) -> py::object {
-                const gcode::Toolpath& toolpath = *objectOf(self).toolpath;
-                if (toolpath.flow.empty()) return py::none();
-                return viewOf(toolpath.flow, self);
-            },
-            "Read-only array of flow_dtype by bead, without a copy: mm^3, mm^3/s, mm. None unless read with flow_lag.")
-        .def_property_readonly(
-            "travels",
-            [](const py::object& self) -> py::object {
-                const ToolpathObject& object = objectOf(self);
-                if (!object.travels) return py::none();
-                return viewOf(*object.travels, self);
-            },
-            "Read-only array of travel_dtype, without a copy, in order: the moves of the nozzle that lay nothing. mm, "
-            "mm/s; filament is what E moves meanwhile (negative: drawn back); bead is the index of the next bead; "
-            "start and seconds are 0 unless timed=True. None unless read with travels=True.");
-}
-
 void addArrays(py::class_<ToolpathObject>& type) {
-    type.def_property_readonly(
-            "beads", [](const py::object& self) { return viewOf(objectOf(self).toolpath->beads, self); },
-            "Read-only array of bead_dtype, without a copy, in print order: mm; z is that of the nozzle, the top of "
-            "the bead; run is an index into runs; arc is an index into arcs, or minus the line if straight.")
-        .def_property_readonly(
-            "runs", [](const py::object& self) { return viewOf(objectOf(self).toolpath->runs, self); },
-            "Read-only array of run_dtype, without a copy: what consecutive beads share. height mm, speed mm/s.")
-        .def_property_readonly(
-            "arcs", [](const py::object& self) { return viewOf(objectOf(self).toolpath->arcs, self); },
-            "Read-only array of arc_dtype, without a copy: center mm, sweep radians.");
+    // What an array is made of; null: nobody asked for it.
+    const auto array = [&type](const char* name, auto records, const char* doc) {
+        type.def_property_readonly(
+            name,
+            [records](const py::object& self) -> py::object {
+                const auto* const given = records(self.cast<const ToolpathObject&>());
+                return given != nullptr ? viewOf(*given, self) : py::object(py::none());
+            },
+            doc);
+    };
+    const auto unlessEmpty = [](const auto& records) { return records.empty() ? nullptr : &records; };
+    array(
+        "timing", [=](const ToolpathObject& self) { return unlessEmpty(self.toolpath->timing); },
+        "Read-only array of timing_dtype by bead, without a copy: s since the program's begin, s, mm/s. None "
+        "unless read with timed=True or flow_lag.");
+    array(
+        "flow", [=](const ToolpathObject& self) { return unlessEmpty(self.toolpath->flow); },
+        "Read-only array of flow_dtype by bead, without a copy: mm^3, mm^3/s, mm. None unless read with flow_lag.");
+    array(
+        "travels", [](const ToolpathObject& self) { return self.travels ? &*self.travels : nullptr; },
+        "Read-only array of travel_dtype, without a copy, in order: the moves of the nozzle that lay nothing. mm, "
+        "mm/s; filament is what E moves meanwhile (negative: drawn back); bead is the index of the next bead; "
+        "start and seconds are 0 unless timed=True. None unless read with travels=True.");
+    array(
+        "beads", [](const ToolpathObject& self) { return &self.toolpath->beads; },
+        "Read-only array of bead_dtype, without a copy, in print order: mm; z is that of the nozzle, the top of "
+        "the bead; run is an index into runs; arc is an index into arcs, or minus the line if straight.");
+    array(
+        "runs", [](const ToolpathObject& self) { return &self.toolpath->runs; },
+        "Read-only array of run_dtype, without a copy: what consecutive beads share. height mm, speed mm/s.");
+    array(
+        "arcs", [](const ToolpathObject& self) { return &self.toolpath->arcs; },
+        "Read-only array of arc_dtype, without a copy: center mm, sweep radians.");
     using Path = gcode::Toolpath;
     using gcode::Bead;
-    type.def(
-            "bead_layers",
-            [](const ToolpathObject& self) {
-                return perBead<std::uint32_t>(self, [](const Path& t, const Bead& b) { return t.runOf(b).layer; });
-            },
-            documented("bead_layers(self)", "The layer of each bead: 1, 2, ...; 0 is what comes before the first.")
-                .c_str())
-        .def(
-            "bead_features",
-            [](const ToolpathObject& self) {
-                return perBead<std::uint8_t>(
-                    self, [](const Path& t, const Bead& b) { return static_cast<std::uint8_t>(t.runOf(b).feature); });
-            },
-            documented("bead_features(self)", "The feature of each bead, an index into stratum.features.").c_str())
-        .def(
-            "bead_tools",
-            [](const ToolpathObject& self) {
-                return perBead<std::uint8_t>(self, [](const Path& t, const Bead& b) { return t.runOf(b).tool; });
-            },
-            documented("bead_tools(self)", "The T number of each bead.").c_str())
-        .def(
-            "bead_objects",
-            [](const ToolpathObject& self) {
-                return perBead<std::uint16_t>(self, [](const Path& t, const Bead& b) { return t.runOf(b).object; });
-            },
-            documented("bead_objects(self)", "The object of each bead, an index into objects; 0 is none.").c_str())
-        .def(
-            "bead_lines",
-            [](const ToolpathObject& self) {
-                return perBead<std::uint32_t>(self, [](const Path& t, const Bead& b) { return t.lineOf(b); });
-            },
-            documented("bead_lines(self)", "The line of each bead in its file, from 1.").c_str())
-        .def(
-            "bead_lengths",
-            [](const ToolpathObject& self) {
-                return perBead<double>(self, [](const Path& t, const Bead& b) { return gcode::beadLength(t, b); });
-            },
-            documented("bead_lengths(self)", "The length of each bead's path, mm, its climb included.").c_str())
-        .def(
-            "bead_volumes",
-            [](const ToolpathObject& self) {
-                return perBead<double>(self, [](const Path& t, const Bead& b) {
-                    return gcode::laidVolume(t, static_cast<std::uint32_t>(&b - t.beads.data()));
-                });
-            },
-            documented("bead_volumes(self)", "What each bead lays, mm^3.").c_str());
+    const auto each = [&type](const std::string& name, auto of, const char* doc) {
+        using Value = decltype(of(Path(), Bead()));
+        type.def(
+            name.c_str(), [of](const ToolpathObject& self) { return perBead<Value>(self, of); },
+            documented(name + "(self)", doc).c_str());
+    };
+    each(
+        "bead_layers", [](const Path& t, const Bead& b) { return t.runOf(b).layer; },
+        "The layer of each bead: 1, 2, ...; 0 is what comes before the first.");
+    each(
+        "bead_features", [](const Path& t, const Bead& b) { return static_cast<std::uint8_t>(t.runOf(b).feature); },
+        "The feature of each bead, an index into stratum.features.");
+    each(
+        "bead_tools", [](const Path& t, const Bead& b) { return t.runOf(b).tool; }, "The T number of each bead.");
+    each(
+        "bead_objects", [](const Path& t, const Bead& b) { return t.runOf(b).object; },
+        "The object of each bead, an index into objects; 0 is none.");
+    each(
+        "bead_lines", [](const Path& t, const Bead& b) { return t.lineOf(b); },
+        "The line of each bead in its file, from 1.");
+    each(
+        "bead_lengths", [](const Path& t, const Bead& b) { return gcode::beadLength(t, b); },
+        "The length of each bead's path, mm, its climb included.");
+    each(
+        "bead_volumes",
+        [](const Path& t, const Bead& b) {
+            return gcode::laidVolume(t, static_cast<std::uint32_t>(&b - t.beads.data()));
+        },
+        "What each bead lays, mm^3.");
 }
 
 void addFacts(py::class_<ToolpathObject>& type) {
@@ -344,7 +317,6 @@ void bindToolpath(py::module_& module) {
                                     "Everything that one G-code file deposits, in print order: mm, z up. It never "
                                     "changes; replace() makes another.");
     addArrays(type);
-    addAskedArrays(type);
     addFacts(type);
     voxelize::PrintOptions print;
     const std::string selection = parametersOf([&](Keywords& options) { assemble::readSelection(options, print); });
