@@ -11,21 +11,15 @@
 #include <array>
 #include <cmath>
 #include <set>
-#include <tuple>
 #include <utility>
 #include <vector>
 
 namespace stratum::ondemand {
-namespace {
-
-using voxelize::Attribute;
-using Kind = voxelize::AttributeKind;
-
-glm::vec3 valueOf(const voxelize::BeadAttributes& values, Attribute attribute, std::uint32_t bead) {
+glm::vec3 valueOf(const voxelize::BeadAttributes& values, voxelize::Attribute attribute, std::uint32_t bead) {
     switch (voxelize::attributeKind(attribute)) {
-        case Kind::integer:
+        case voxelize::AttributeKind::integer:
             return {static_cast<float>(values.integer(attribute, bead)), 0.0F, 0.0F};
-        case Kind::number:
+        case voxelize::AttributeKind::number:
             return {values.number(attribute, bead), 0.0F, 0.0F};
         default: {
             const openvdb::Vec3f color = values.color(bead);
@@ -33,6 +27,10 @@ glm::vec3 valueOf(const voxelize::BeadAttributes& values, Attribute attribute, s
         }
     }
 }
+
+namespace {
+
+using voxelize::Attribute;
 
 class Lookup final : public march::AttributeLookup {
 public:
@@ -147,10 +145,7 @@ trace::AttributeSummary summarize(const PrintField& field, voxelize::Attribute a
     const auto grids = voxelize::makeAttributeGrids(toolpath, wanted, *nothing);
     trace::AttributeSummary summary = march::summarize(*grids.front());
     const voxelize::BeadAttributes values(toolpath, wanted, overfillFor(field, attribute));
-    const auto before = [](const glm::vec3& a, const glm::vec3& b) {
-        return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z);
-    };
-    std::set<glm::vec3, decltype(before)> colors(before);
+    std::set<glm::vec3, trace::Before> colors;
     glm::vec3 last(-1.0F);
     bool any = false;
     std::set<int> integers;

@@ -16,6 +16,9 @@ namespace stratum::ondemand {
 /// The attribute of that name, as in --grids. Throws UsageError with the list of names.
 voxelize::Attribute attributeNamed(std::string_view name);
 
+/// Of one bead: a whole number or a number in x, or a colour.
+glm::vec3 valueOf(const voxelize::BeadAttributes& values, voxelize::Attribute attribute, std::uint32_t bead);
+
 /// The values of the grid that voxelize::Voxelizer::attributes() would make, computed on demand, and beyond its narrow
 /// band those of the whole inside, which a section shows: of BeadLookup::at(). Each thread caches a few recent leaves.
 std::shared_ptr<const march::AttributeSource> makePrintAttribute(std::shared_ptr<const PrintField> field,

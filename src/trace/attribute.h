@@ -5,12 +5,20 @@
 
 #include <cstdint>
 #include <string>
+#include <tuple>
 #include <vector>
 
 namespace stratum::trace {
 
 /// gcode2vdb's color for beads whose file states none. Different from every 8-bit sRGB color.
 inline constexpr glm::vec3 kNoColor{0.8f, 0.8f, 0.8f};
+
+/// Orders values by component.
+struct Before {
+    bool operator()(const glm::vec3& a, const glm::vec3& b) const {
+        return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z);
+    }
+};
 
 /// The values of one attribute of an object: integers (tool, layer, feature), numbers (width, speed, time) or colors.
 struct AttributeSummary {

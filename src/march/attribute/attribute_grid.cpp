@@ -12,7 +12,6 @@
 #include <charconv>
 #include <cmath>
 #include <set>
-#include <tuple>
 #include <type_traits>
 #include <utility>
 
@@ -85,8 +84,6 @@ std::vector<std::string> labelsOf(const openvdb::GridBase& grid) {
     return labels;
 }
 
-bool isBefore(const glm::vec3& a, const glm::vec3& b) { return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z); }
-
 std::string notAnAttribute(const std::string& where, const std::string& name, const std::string& holds) {
     return fmt::format("{}: the grid {} holds {}; attributes are Int32, float or Vec3f", where, name, holds);
 }
@@ -147,7 +144,7 @@ trace::AttributeSummary summarize(const openvdb::GridBase& grid) {
         using Value = typename std::decay_t<decltype(typed)>::ValueType;
         if constexpr (std::is_same_v<Value, openvdb::Vec3f>) {
             summary.kind = trace::AttributeSummary::Kind::color;
-            std::set<glm::vec3, decltype(&isBefore)> colors(&isBefore);
+            std::set<glm::vec3, trace::Before> colors;
             openvdb::Vec3f last(-1.0F);
             for (auto it = typed.cbeginValueOn(); it; ++it) {
                 if (*it == last) continue;

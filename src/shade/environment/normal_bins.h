@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace stratum::shade {
 
@@ -19,18 +20,19 @@ struct NormalBins {
     /// In [0, kCount).
     /// @param normal  finite, of any length but 0
     static int of(const glm::vec3& normal) {
-        const float sum = std::abs(normal.x) + std::abs(normal.y) + std::abs(normal.z);
-        float x = normal.x / sum;
-        float y = normal.y / sum;
-        if (normal.z < 0.0f) {
-            const float folded = std::copysign(1.0f - std::abs(y), x);
-            y = std::copysign(1.0f - std::abs(x), y);
-            x = folded;
-        }
+        const auto [x, y] = folded(normal);
         const auto cell = [](float v) { return std::clamp(static_cast<int>((0.5f * v + 0.5f) * kSide), 0, kSide - 1); };
         return cell(y) * kSide + cell(x);
     }
 
+    /// The point of the octahedral square, [-1, 1]^2, of a direction.
+    static std::pair<float, float> folded(const glm::vec3& direction) {
+        const float sum = std::abs(direction.x) + std::abs(direction.y) + std::abs(direction.z);
+        const float x = direction.x / sum;
+        const float y = direction.y / sum;
+        if (!(direction.z < 0.0f)) return {x, y};
+        return {std::copysign(1.0f - std::abs(y), x), std::copysign(1.0f - std::abs(x), y)};
+    }
     /// A normal of a bin.
     /// @param uv  in the bin's square, [0, 1]^2
     static glm::vec3 normal(int bin, const glm::vec2& uv) {

@@ -2,6 +2,7 @@
 
 #include "base/parallel_for.h"
 #include "shade/camera/sampling.h"
+#include "shade/environment/normal_bins.h"
 #include "shade/integrator/path.h"
 
 #include <glm/geometric.hpp>
@@ -78,17 +79,6 @@ std::vector<LightPart> gather(const SceneDescription& scene, const glm::dvec3& c
     return parts;
 }
 
-/// The direction of a point of the octahedral square, [-1, 1]^2.
-glm::vec3 unfolded(float u, float v) {
-    glm::vec3 d(u, v, 1.0f - std::abs(u) - std::abs(v));
-    if (d.z < 0.0f) {
-        const glm::vec3 e = d;
-        d.x = (1.0f - std::abs(e.y)) * std::copysign(1.0f, e.x);
-        d.y = (1.0f - std::abs(e.x)) * std::copysign(1.0f, e.y);
-    }
-    return glm::normalize(d);
-}
-
 }  // namespace
 
 BareLight::BareLight(const SceneDescription& scene, const glm::dvec3& center, bool glints)
@@ -127,15 +117,18 @@ BareLight::BareLight(const SceneDescription& scene, const glm::dvec3& center, bo
         for (float& node : *table) node /= brightest_;
 }
 
-float BareLight::at(const std::vector<float>& table, const glm::vec3& direction) {
-    const float sum = std::abs(direction.x) + std::abs(direction.y) + std::abs(direction.z);
-    float u = direction.x / sum;
-    float v = direction.y / sum;
-    if (direction.z < 0.0f) {
-        const float w = u;
-        u = std::copysign(1.0f - std::abs(v), w);
-        v = std::copysign(1.0f - std::abs(w), v);
+glm::vec3 BareLight::unfolded(float u, float v) {
+    glm::vec3 d(u, v, 1.0f - std::abs(u) - std::abs(v));
+    if (d.z < 0.0f) {
+        const glm::vec3 e = d;
+        d.x = (1.0f - std::abs(e.y)) * std::copysign(1.0f, e.x);
+        d.y = (1.0f - std::abs(e.x)) * std::copysign(1.0f, e.y);
     }
+    return glm::normalize(d);
+}
+
+float BareLight::at(const std::vector<float>& table, const glm::vec3& direction) {
+    const auto [u, v] = NormalBins::folded(direction);
     const auto cell = [](float x, std::size_t& i) {
         const float place = std::clamp(0.5f * (x + 1.0f), 0.0f, 1.0f) * (kSide - 1);
         i = std::min(static_cast<std::size_t>(place), kSide - 2);

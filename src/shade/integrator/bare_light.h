@@ -31,6 +31,9 @@ public:
     /// Radiance (relative, see color.h) of the brightest normal; 0 if there is no light.
     float brightest() const { return brightest_; }
 
+    /// The direction of a point of the octahedral square, [-1, 1]^2.
+    static glm::vec3 unfolded(float u, float v);
+
 private:
     static float at(const std::vector<float>& table, const glm::vec3& direction);
 

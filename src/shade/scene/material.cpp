@@ -15,7 +15,6 @@
 #include <cmath>
 #include <span>
 #include <string_view>
-#include <tuple>
 #include <utility>
 
 namespace stratum::shade {
@@ -184,10 +183,7 @@ ObjectMaterial makeObjectMaterial(const MaterialOptions& options, const std::str
         }
         brdfs.push_back(recolored(*base, kNeutral, text));
         const auto choose = [colors = summary.colors](const glm::vec3& v) {
-            const auto before = [](const glm::vec3& a, const glm::vec3& b) {
-                return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z);
-            };
-            const auto found = std::lower_bound(colors.begin(), colors.end(), v, before);
+            const auto found = std::lower_bound(colors.begin(), colors.end(), v, trace::Before());
             return found != colors.end() && *found == v ? static_cast<std::size_t>(found - colors.begin()) + 1
                                                         : std::size_t{0};
         };

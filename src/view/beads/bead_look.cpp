@@ -1,13 +1,12 @@
 #include "view/beads/bead_look.h"
 
-#include "voxelize/grid/attributes.h"
+#include "ondemand/print_attributes.h"
 
 #include <glm/geometric.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <tuple>
 #include <utility>
 
 namespace stratum::view {
@@ -24,41 +23,17 @@ Json list(const Vector& v) {
     return Json::array({v.x, v.y, v.z});
 }
 
-// The direction of a point of the octahedral square, [-1, 1]^2.
-glm::vec3 unfolded(float u, float v) {
-    glm::vec3 d(u, v, 1.0F - std::abs(u) - std::abs(v));
-    if (d.z < 0.0F) {
-        const glm::vec3 e = d;
-        d.x = (1.0F - std::abs(e.y)) * std::copysign(1.0F, e.x);
-        d.y = (1.0F - std::abs(e.x)) * std::copysign(1.0F, e.y);
-    }
-    return glm::normalize(d);
-}
-
 Json tableOf(const shade::BareLight& light) {
     Json table = Json::array();
     const auto place = [](int n) { return 2.0F * static_cast<float>(n) / (kLightSide - 1) - 1.0F; };
     const auto rounded = [](float value) { return std::round(value * 1e4F) / 1e4; };
     for (int y = 0; y < kLightSide; ++y)
         for (int x = 0; x < kLightSide; ++x) {
-            const glm::vec3 direction = unfolded(place(x), place(y));
+            const glm::vec3 direction = shade::BareLight::unfolded(place(x), place(y));
             table.push_back(rounded(light.matt(direction)));
             table.push_back(rounded(light.gloss(direction)));
         }
     return table;
-}
-
-glm::vec3 valueOf(const voxelize::BeadAttributes& values, voxelize::Attribute attribute, std::uint32_t bead) {
-    switch (voxelize::attributeKind(attribute)) {
-        case voxelize::AttributeKind::integer:
-            return {static_cast<float>(values.integer(attribute, bead)), 0.0F, 0.0F};
-        case voxelize::AttributeKind::number:
-            return {values.number(attribute, bead), 0.0F, 0.0F};
-        default: {
-            const openvdb::Vec3f color = values.color(bead);
-            return {color[0], color[1], color[2]};
-        }
-    }
 }
 
 }  // namespace
@@ -115,14 +90,11 @@ BeadColors colorsOf(const ViewedPicture& picture, const gcode::Toolpath& toolpat
     if (objects.empty() || objects.front().single()) return {};
     const std::vector<voxelize::Attribute> wanted = voxelize::parseGrids(attribute);
     const voxelize::BeadAttributes values(toolpath, wanted);
-    const auto before = [](const shade::Color& a, const shade::Color& b) {
-        return std::tie(a.r, a.g, a.b) < std::tie(b.r, b.g, b.b);
-    };
-    std::map<shade::Color, std::uint16_t, decltype(before)> known(before);
+    std::map<shade::Color, std::uint16_t, trace::Before> known;
     BeadColors colors;
     colors.places.reserve(toolpath.beads.size());
     for (std::uint32_t bead = 0; bead < toolpath.beads.size(); ++bead) {
-        const glm::vec3 value = valueOf(values, wanted.front(), bead);
+        const glm::vec3 value = ondemand::valueOf(values, wanted.front(), bead);
         const shade::Color color = objects.front().of(value).albedo;
         const auto [found, fresh] = known.try_emplace(color, static_cast<std::uint16_t>(colors.palette.size()));
         if (fresh && colors.palette.size() < kMaxColors) {
