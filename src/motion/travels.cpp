@@ -33,24 +33,4 @@ void TravelRecorder::move(const gcode::Move& move) {
     if (next_ != nullptr) next_->move(passed);
 }
 
-void TravelRecorder::limits(const gcode::MachineLimits& limits) {
-    if (next_ != nullptr) next_->limits(limits);
-}
-
-void TravelRecorder::wait(double seconds) {
-    if (next_ != nullptr) next_->wait(seconds);
-}
-
-void TravelRecorder::stop(gcode::Stop kind, std::uint32_t line) {
-    if (next_ != nullptr) next_->stop(kind, line);
-}
-
-void TravelRecorder::elapsed(double seconds) {
-    if (next_ != nullptr) next_->elapsed(seconds);
-}
-
-void TravelRecorder::origin(const gcode::LimitOrigins& origins) {
-    if (next_ != nullptr) next_->origin(origins);
-}
-
 }  // namespace stratum::motion

@@ -29,12 +29,22 @@ class TravelRecorder final : public gcode::MotionSink {
 public:
     TravelRecorder(std::vector<Travel>& travels, gcode::MotionSink* next) : travels_(travels), next_(next) {}
 
-    void limits(const gcode::MachineLimits& limits) override;
+    void limits(const gcode::MachineLimits& limits) override {
+        if (next_ != nullptr) next_->limits(limits);
+    }
     void move(const gcode::Move& move) override;
-    void wait(double seconds) override;
-    void stop(gcode::Stop kind, std::uint32_t line) override;
-    void elapsed(double seconds) override;
-    void origin(const gcode::LimitOrigins& origins) override;
+    void wait(double seconds) override {
+        if (next_ != nullptr) next_->wait(seconds);
+    }
+    void stop(gcode::Stop kind, std::uint32_t line) override {
+        if (next_ != nullptr) next_->stop(kind, line);
+    }
+    void elapsed(double seconds) override {
+        if (next_ != nullptr) next_->elapsed(seconds);
+    }
+    void origin(const gcode::LimitOrigins& origins) override {
+        if (next_ != nullptr) next_->origin(origins);
+    }
 
 private:
     std::vector<Travel>& travels_;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -18,19 +19,8 @@ constexpr std::array<char, kMotionAxes> kLetters{'X', 'Y', 'Z', 'E'};
 // Commands that stop the machine for an unknown time: homing, probing, heating, pauses.
 bool rests(const Command& command) {
     if (command.letter == 'G') return command.code == 28 || command.code == 29 || command.code == 30;
-    switch (command.code) {
-        case 0:
-        case 1:
-        case 25:
-        case 109:
-        case 190:
-        case 226:
-        case 400:
-        case 600:
-            return true;
-        default:
-            return false;
-    }
+    constexpr std::array kCodes{0, 1, 25, 109, 190, 226, 400, 600};
+    return std::find(kCodes.begin(), kCodes.end(), command.code) != kCodes.end();
 }
 
 std::optional<Stop> stopOf(const Command& command) {

@@ -66,34 +66,18 @@ double& valueOf(MachineLimits& limits, Limit limit) {
     if (isOf(limit, Limit::acceleration)) return limits.acceleration[axis];
     if (isOf(limit, Limit::jerk)) return limits.jerk[axis];
     if (isOf(limit, Limit::steps_per_mm)) return limits.steps_per_mm[axis];
-    switch (limit) {
-        case Limit::printing:
-            return limits.printing;
-        case Limit::travel:
-            return limits.travel;
-        case Limit::retracting:
-            return limits.retracting;
-        case Limit::path_speed:
-            return limits.path_speed;
-        case Limit::extrude_only_speed:
-            return limits.extrude_only_speed;
-        case Limit::least_printing_speed:
-            return limits.least_printing_speed;
-        case Limit::least_travel_speed:
-            return limits.least_travel_speed;
-        case Limit::junction_deviation:
-            return limits.junction_deviation;
-        case Limit::corner_velocity:
-            return limits.corner_velocity;
-        case Limit::extruder_corner_velocity:
-            return limits.extruder_corner_velocity;
-        case Limit::cruise_ratio:
-            return limits.cruise_ratio;
-        case Limit::arc_resolution:
-            return limits.arc_resolution;
-        default:
-            return limits.wait_after_m400;
-    }
+    // In the order of Limit.
+    using All = MachineLimits;
+    constexpr std::array kOthers{&All::printing,           &All::travel,
+                                 &All::retracting,         &All::path_speed,
+                                 &All::extrude_only_speed, &All::least_printing_speed,
+                                 &All::least_travel_speed, &All::junction_deviation,
+                                 &All::corner_velocity,    &All::extruder_corner_velocity,
+                                 &All::cruise_ratio,       &All::arc_resolution,
+                                 &All::wait_after_m400};
+    constexpr auto kFirst = static_cast<std::size_t>(Limit::printing);
+    static_assert(kFirst + kOthers.size() == kLimitCount);
+    return limits.*kOthers[static_cast<std::size_t>(limit) - kFirst];
 }
 
 std::string_view limitName(Limit limit, CornerRule rule) {

@@ -4,6 +4,7 @@
 #include "gcode/text/number.h"
 
 #include <algorithm>
+#include <array>
 #include <cstring>
 
 namespace stratum::gcode {
@@ -19,34 +20,9 @@ char upper(char c) { return static_cast<char>(c & ~0x20); }
 bool takesText(char letter, std::int32_t code) {
     if (letter != 'M') return code == 9111;
     if (code >= 810 && code <= 819) return true;
-    switch (code) {
-        case 0:
-        case 1:
-        case 16:
-        case 23:
-        case 28:
-        case 30:
-        case 32:
-        case 33:
-        case 36:
-        case 37:
-        case 38:
-        case 98:
-        case 117:
-        case 118:
-        case 550:
-        case 551:
-        case 552:
-        case 587:
-        case 588:
-        case 589:
-        case 928:
-        case 1002:
-        case 1006:
-            return true;
-        default:
-            return false;
-    }
+    constexpr std::array kCodes{0,   1,   16,  23,  28,  30,  32,  33,  36,  37,   38,  98,
+                                117, 118, 550, 551, 552, 587, 588, 589, 928, 1002, 1006};
+    return std::find(kCodes.begin(), kCodes.end(), code) != kCodes.end();
 }
 
 // Letters that a line may begin with to go on with the motion in force: axes, arcs and the feed rate.
