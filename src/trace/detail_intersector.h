@@ -1,8 +1,7 @@
 // One shape at several voxel sizes (levels of detail), selected by the distance from the eye.
 //
 // The composite surface depends on position and eye alone, so it is the same for all rays. At the distances where the
-// voxel size changes it has steps, at most half a voxel of each level high, which are closed by walls
-// (piecewise_tracer.h).
+// voxel size changes it has steps, at most half a voxel of each level high, which are closed by walls.
 #pragma once
 
 #include "trace/intersector.h"

@@ -32,7 +32,7 @@ struct Hit {
     glm::dvec3 position{0.0};     ///< world space
     glm::dvec3 normal{0.0};       ///< unit, geometric: gradient of the trilinear field at the hit, towards outside
     std::uint32_t object = 0;     ///< index of the object in a scene; see scene_intersector.h
-    std::uint32_t part : 31 = 0;  ///< index of the part in a composite intersector; see piecewise_tracer.h
+    std::uint32_t part : 31 = 0;  ///< index of the part in a composite intersector; see detail_intersector.h
     std::uint32_t cut : 1 = 0;    ///< 1: on a plane that cuts the shape; see clip_intersector.h. Of its tracers alone
 };
 
