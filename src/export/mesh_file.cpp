@@ -3,10 +3,7 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/text.h"
-#include "export/mesh/gltf_file.h"
-#include "export/mesh/obj_file.h"
-#include "export/mesh/three_mf_file.h"
-#include "export/mesh/usd_mesh_file.h"
+#include "export/mesh/mesh_formats.h"
 
 #include <fmt/format.h>
 

@@ -3,7 +3,7 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/own_file.h"
-#include "export/mesh/usd_mesh_file.h"
+#include "export/mesh/mesh_formats.h"
 
 #include <fmt/format.h>
 

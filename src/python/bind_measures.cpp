@@ -1,4 +1,4 @@
-#include "python/bind_measures.h"
+#include "python/bindings.h"
 
 #include "base/json_text.h"
 #include "python/conversion.h"

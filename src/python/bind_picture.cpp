@@ -1,4 +1,4 @@
-#include "python/bind_picture.h"
+#include "python/bindings.h"
 
 #include "python/arrays.h"
 #include "python/long_call.h"

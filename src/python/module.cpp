@@ -1,6 +1,5 @@
 // The Python module stratum._stratum: the package stratum takes everything from it.
-#include "python/bind_measures.h"
-#include "python/bind_picture.h"
+#include "python/bindings.h"
 #include "python/errors.h"
 #include "python/level_set_object.h"
 #include "python/threads.h"

@@ -2,7 +2,7 @@
 
 #include "base/error.h"
 #include "base/stopwatch.h"
-#include "shade/film/jpeg_writer.h"
+#include "shade/film/lossy_writers.h"
 #include "shade/film/tonemap.h"
 #include "shade/integrator/deep_light.h"
 #include "shade/post/denoise.h"

@@ -1,4 +1,4 @@
-#include "assemble/thumbnail/bmp_writer.h"
+#include "assemble/thumbnail/bmp_and_qoi.h"
 
 #include <cstddef>
 #include <stdexcept>

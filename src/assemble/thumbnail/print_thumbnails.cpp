@@ -2,11 +2,10 @@
 
 #include "assemble/finished_picture.h"
 #include "assemble/ready_scene.h"
-#include "assemble/thumbnail/bmp_writer.h"
-#include "assemble/thumbnail/qoi_writer.h"
+#include "assemble/thumbnail/bmp_and_qoi.h"
 #include "gcode/toolpath/purpose.h"
 #include "shade/camera/camera.h"
-#include "shade/film/jpeg_writer.h"
+#include "shade/film/lossy_writers.h"
 #include "shade/film/png.h"
 #include "shade/post/denoise.h"
 

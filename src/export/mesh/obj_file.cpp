@@ -1,4 +1,4 @@
-#include "export/mesh/obj_file.h"
+#include "export/mesh/mesh_formats.h"
 
 #include "base/atomic_file.h"
 #include "base/error.h"

@@ -3,9 +3,8 @@
 #include "base/error.h"
 #include "base/text.h"
 #include "gcode/container/gzip.h"
-#include "gcode/container/heatshrink.h"
 #include "gcode/container/little_endian.h"
-#include "gcode/container/meatpack.h"
+#include "gcode/container/unpack.h"
 #include "gcode/text/number.h"
 
 #include <fmt/format.h>

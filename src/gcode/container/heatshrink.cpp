@@ -1,4 +1,4 @@
-#include "gcode/container/heatshrink.h"
+#include "gcode/container/unpack.h"
 
 #include <algorithm>
 #include <cstddef>

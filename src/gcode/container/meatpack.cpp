@@ -1,4 +1,4 @@
-#include "gcode/container/meatpack.h"
+#include "gcode/container/unpack.h"
 
 #include <array>
 

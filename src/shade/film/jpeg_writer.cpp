@@ -1,4 +1,4 @@
-#include "shade/film/jpeg_writer.h"
+#include "shade/film/lossy_writers.h"
 
 #include <cstddef>
 #include <cstdio>  // jpeglib.h needs it before it

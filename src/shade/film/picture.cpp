@@ -3,9 +3,8 @@
 #include "base/error.h"
 #include "base/text.h"
 #include "shade/film/exr.h"
-#include "shade/film/jpeg_writer.h"
+#include "shade/film/lossy_writers.h"
 #include "shade/film/png.h"
-#include "shade/film/webp_writer.h"
 
 #include <fmt/format.h>
 

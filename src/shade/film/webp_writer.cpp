@@ -1,4 +1,4 @@
-#include "shade/film/webp_writer.h"
+#include "shade/film/lossy_writers.h"
 
 #include "base/own_file.h"
 

@@ -1,4 +1,4 @@
-#include "shade/measured/astm_reader.h"
+#include "shade/measured/text_readers.h"
 
 #include "shade/measured/scan_channels.h"
 #include "shade/measured/scan_text.h"

@@ -3,12 +3,10 @@
 #include "base/error.h"
 #include "base/input_file.h"
 #include "shade/angles.h"
-#include "shade/measured/astm_reader.h"
 #include "shade/measured/brdf_exr.h"
 #include "shade/measured/merl_file.h"
-#include "shade/measured/minidiff_reader.h"
 #include "shade/measured/scan_interpolant.h"
-#include "shade/measured/zemax_reader.h"
+#include "shade/measured/text_readers.h"
 
 #include <fmt/format.h>
 #include <zlib.h>

@@ -1,4 +1,4 @@
-#include "shade/measured/minidiff_reader.h"
+#include "shade/measured/text_readers.h"
 
 #include "shade/angles.h"
 #include "shade/measured/scan_channels.h"

@@ -1,7 +1,7 @@
 #include "study/picture/thumbnail.h"
 
 #include "base/base64.h"
-#include "shade/film/jpeg_writer.h"
+#include "shade/film/lossy_writers.h"
 #include "shade/film/tonemap.h"
 
 #include <cstdint>

@@ -1,7 +1,7 @@
 #include "shade/measured/scan_interpolant.h"
 
 #include "corpus.h"
-#include "shade/measured/minidiff_reader.h"
+#include "shade/measured/text_readers.h"
 #include "shade/scan_checks.h"
 
 #include <zlib.h>

@@ -1,4 +1,4 @@
-#include "shade/measured/zemax_reader.h"
+#include "shade/measured/text_readers.h"
 
 #include "base/error.h"
 #include "shade/scan_checks.h"

@@ -1,4 +1,4 @@
-// JPEG files of 8-bit RGB pictures.
+// Pictures as .jpg and .webp.
 #pragma once
 
 #include <cstdint>
@@ -7,6 +7,8 @@
 #include <vector>
 
 namespace stratum::shade {
+
+// JPEG files of 8-bit RGB pictures.
 
 inline constexpr int kJpegMostSide = 65500;  ///< pixels, of libjpeg
 
@@ -17,5 +19,16 @@ inline constexpr int kJpegMostSide = 65500;  ///< pixels, of libjpeg
 /// Throws std::invalid_argument for another number of bytes, std::runtime_error if libjpeg can't.
 std::vector<std::uint8_t> encodeJpeg(int width, int height, const std::vector<std::uint8_t>& rgb, int quality,
                                      const std::map<std::string, std::string>& metadata = {});
+
+// WebP files of 8-bit RGB and RGBA pictures.
+
+inline constexpr int kWebpMostSide = 16383;  ///< pixels, of the format
+
+/// Lossy; half of a JPEG's size. Its colours have half the resolution, found so that edges stay sharp ("sharp YUV").
+/// @param pixels   3 or 4 * width * height bytes, sRGB or sRGB and alpha, row by row from the top; alpha is kept as it
+/// is
+/// @param quality  0 to 100
+/// Throws std::invalid_argument for another number of bytes, std::runtime_error if libwebp can't.
+std::vector<std::uint8_t> encodeWebp(int width, int height, const std::vector<std::uint8_t>& pixels, int quality);
 
 }  // namespace stratum::shade
