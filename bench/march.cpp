@@ -11,8 +11,7 @@
 #include "gcode/reader.h"
 #include "march/brick/brick_intersector.h"
 #include "march/file/level_set_file.h"
-#include "march/reference/sphere_intersector.h"
-#include "march/reference/vdb_intersector.h"
+#include "march/reference/reference_intersectors.h"
 
 #include <fmt/format.h>
 #include <openvdb/openvdb.h>

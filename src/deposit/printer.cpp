@@ -4,9 +4,7 @@
 #include "base/names.h"
 #include "base/options/json_section.h"
 #include "base/text.h"
-#include "deposit/limits/command_limits.h"
-#include "deposit/limits/json_limits.h"
-#include "deposit/limits/klipper.h"
+#include "deposit/limits/limit_files.h"
 #include "deposit/limits/printer_text.h"
 #include "gcode/printer/machine_limits.h"
 

@@ -3,8 +3,7 @@
 #include "convert/conversion_steps.h"
 #include "convert/elements_output.h"
 #include "convert/mesh_output.h"
-#include "convert/time_report.h"
-#include "convert/toolpath_report.h"
+#include "convert/reports.h"
 #include "print_options.h"
 
 #include "base/atomic_file.h"

@@ -1,7 +1,6 @@
 #include "convert/conversion_steps.h"
 
-#include "convert/time_report.h"
-#include "convert/toolpath_report.h"
+#include "convert/reports.h"
 
 #include "compare/comparison_report.h"
 #include "voxelize/grid/solid_check.h"

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "convert/conversion.h"
-#include "convert/grid_report.h"
 #include "convert/model_comparison.h"
+#include "convert/reports.h"
 #include "progress.h"
 
 #include "deposit/read_print.h"

@@ -1,4 +1,4 @@
-#include "convert/grid_report.h"
+#include "convert/reports.h"
 
 #include "voxelize/beads/estimate.h"
 #include "voxelize/grid/solid_check.h"

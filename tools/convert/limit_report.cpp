@@ -1,4 +1,4 @@
-#include "convert/limit_report.h"
+#include "convert/reports.h"
 
 #include <fmt/format.h>
 

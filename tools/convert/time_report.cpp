@@ -1,6 +1,5 @@
-#include "convert/time_report.h"
+#include "convert/reports.h"
 
-#include "convert/limit_report.h"
 #include "gcode/toolpath/stated.h"
 #include "gcode/toolpath/toolpath.h"
 

@@ -1,4 +1,4 @@
-#include "convert/toolpath_report.h"
+#include "convert/reports.h"
 
 #include "gcode/summary.h"
 #include "gcode/toolpath/color.h"

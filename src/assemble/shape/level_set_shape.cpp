@@ -8,8 +8,7 @@
 #include "march/brick/brick_intersector.h"
 #include "march/file/level_set_file.h"
 #include "march/file/sdf_grid.h"
-#include "march/reference/sphere_intersector.h"
-#include "march/reference/vdb_intersector.h"
+#include "march/reference/reference_intersectors.h"
 #include "shade/palette/filament_color.h"
 #include "trace/sdf_intersector.h"
 

@@ -1,4 +1,4 @@
-#include "deposit/limits/command_limits.h"
+#include "deposit/limits/limit_files.h"
 
 #include "base/error.h"
 #include "base/text.h"

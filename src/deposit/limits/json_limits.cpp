@@ -1,4 +1,4 @@
-#include "deposit/limits/json_limits.h"
+#include "deposit/limits/limit_files.h"
 
 #include "gcode/option_names.h"
 

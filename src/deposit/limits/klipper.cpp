@@ -1,4 +1,4 @@
-#include "deposit/limits/klipper.h"
+#include "deposit/limits/limit_files.h"
 
 #include "base/error.h"
 #include "base/text.h"

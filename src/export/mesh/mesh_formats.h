@@ -1,10 +1,13 @@
 // Files of meshes with materials: .obj, .3mf, .usda and .glb.
 #pragma once
 
+#include "base/srgb.h"
 #include "export/mesh/mesh_space.h"
 #include "export/mesh/surface_mesh.h"
 
+#include <array>
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <span>
 #include <string>
@@ -54,5 +57,17 @@ void writeGlb(const SurfaceMesh& mesh, const std::filesystem::path& path, const 
 
 /// Throws UsageError, with the path, if a mesh of so many points and triangles does not fit.
 void requireGlbSize(std::size_t points, std::size_t triangles, const std::filesystem::path& path);
+
+// sRGB as formats of renderers want it.
+
+/// Linear light of an sRGB color, each in [0, 1].
+inline std::array<double, 3> linearOf(const std::array<std::uint8_t, 3>& srgb) {
+    std::array<double, 3> linear{};
+    for (std::size_t n = 0; n < 3; ++n) linear[n] = linearOfSrgb(srgb[n] / 255.0);
+    return linear;
+}
+
+/// Roughness of plastic in formats that have one: the square of it is the default material's GGX alpha, 0.22.
+inline constexpr double kPlasticRoughness = 0.47;
 
 }  // namespace stratum::exporter

@@ -3,7 +3,6 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "export/mesh/face_groups.h"
-#include "export/mesh/linear_color.h"
 
 #include <fmt/format.h>
 

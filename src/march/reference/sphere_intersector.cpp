@@ -1,4 +1,4 @@
-#include "march/reference/sphere_intersector.h"
+#include "march/reference/reference_intersectors.h"
 
 #include "march/brick/cell_root.h"
 #include "march/file/grid_axes.h"

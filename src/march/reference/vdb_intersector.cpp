@@ -1,4 +1,4 @@
-#include "march/reference/vdb_intersector.h"
+#include "march/reference/reference_intersectors.h"
 
 #include "march/file/grid_axes.h"
 #include "march/file/level_set_file.h"

@@ -1,7 +1,5 @@
 #include "report/text/html_page.h"
 
-#include "report/text/svg_plot.h"
-
 #include <fmt/format.h>
 
 namespace stratum::report {

@@ -1,7 +1,6 @@
 #include "report/text/html_page.h"
 #include "report/text/number_text.h"
 #include "report/text/report_file.h"
-#include "report/text/svg_plot.h"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "report/text/svg_plot.h"
+#include "report/text/html_page.h"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "shade/camera/hemisphere_stream.h"
+#include "shade/camera/ray_streams.h"
 
 #include "shade/camera/sampling.h"
 #include "shade/frame.h"

@@ -1,4 +1,4 @@
-#include "shade/camera/sampler_stream.h"
+#include "shade/camera/ray_streams.h"
 
 #include <algorithm>
 #include <array>

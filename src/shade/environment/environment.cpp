@@ -6,8 +6,7 @@
 #include "shade/brdf/preset.h"
 #include "shade/camera/sampling.h"
 #include "shade/environment/map_environment.h"
-#include "shade/environment/sky.h"
-#include "shade/environment/studio.h"
+#include "shade/environment/studio_and_sky.h"
 
 #include <fmt/format.h>
 

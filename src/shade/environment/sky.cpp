@@ -1,8 +1,7 @@
-#include "shade/environment/sky.h"
+#include "shade/environment/studio_and_sky.h"
 
 #include "shade/camera/sampling.h"
 #include "shade/environment/map_environment.h"
-#include "shade/environment/studio.h"
 #include "shade/light/light.h"
 #include "shade/primaries.h"
 

@@ -1,4 +1,4 @@
-#include "shade/environment/studio.h"
+#include "shade/environment/studio_and_sky.h"
 
 #include "shade/camera/sampling.h"
 #include "shade/environment/map_environment.h"

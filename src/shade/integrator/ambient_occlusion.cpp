@@ -1,7 +1,6 @@
 #include "shade/integrator/ambient_occlusion.h"
 
-#include "shade/camera/hemisphere_stream.h"
-#include "shade/camera/sampler_stream.h"
+#include "shade/camera/ray_streams.h"
 
 #include <cmath>
 #include <vector>

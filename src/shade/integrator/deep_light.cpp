@@ -2,7 +2,7 @@
 
 #include "base/parallel_for.h"
 #include "base/stopwatch.h"
-#include "shade/camera/primary_rays.h"
+#include "shade/camera/ray_streams.h"
 #include "shade/integrator/path.h"
 
 #include <tbb/enumerable_thread_specific.h>

@@ -1,6 +1,6 @@
 #include "shade/integrator/path.h"
 
-#include "shade/camera/sampler_stream.h"
+#include "shade/camera/ray_streams.h"
 #include "shade/camera/sampling.h"
 
 #include <algorithm>

@@ -4,7 +4,7 @@
 #include "base/parallel_for.h"
 #include "base/stopwatch.h"
 #include "shade/camera/filter.h"
-#include "shade/camera/primary_rays.h"
+#include "shade/camera/ray_streams.h"
 #include "shade/integrator/checkpoint.h"
 #include "shade/integrator/deep_light.h"
 

@@ -1,6 +1,5 @@
 #include "shade/measured/text_readers.h"
 
-#include "shade/measured/scan_channels.h"
 #include "shade/measured/scan_text.h"
 #include "shade/primaries.h"
 

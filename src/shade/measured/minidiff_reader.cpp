@@ -1,7 +1,6 @@
 #include "shade/measured/text_readers.h"
 
 #include "shade/angles.h"
-#include "shade/measured/scan_channels.h"
 #include "shade/measured/scan_text.h"
 
 #include <fmt/format.h>

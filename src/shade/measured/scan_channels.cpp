@@ -1,4 +1,4 @@
-#include "shade/measured/scan_channels.h"
+#include "shade/measured/scan_text.h"
 
 #include <cmath>
 

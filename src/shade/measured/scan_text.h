@@ -46,4 +46,13 @@ Keyword splitKeyword(std::string_view line);
 std::size_t countOf(const ScanText& text, std::string_view value, std::string_view what, std::size_t low,
                     std::size_t high);
 
+// From the spectral channels of a file to the three of a Color.
+
+/// Indices of the wavelengths (nm) for red, green and blue: the nearest to 612, 549 and 465 nm, the dominant
+/// wavelengths of the primaries. A single wavelength is used for all three: gray.
+struct ChannelChoice {
+    std::size_t red, green, blue;
+};
+ChannelChoice chooseChannels(const std::vector<double>& wavelengths);
+
 }  // namespace stratum::shade

@@ -2,8 +2,7 @@
 
 #include "assemble/finished_picture.h"
 #include "march/brick/brick_intersector.h"
-#include "march/reference/sphere_intersector.h"
-#include "march/reference/vdb_intersector.h"
+#include "march/reference/reference_intersectors.h"
 #include "shade/integrator/render.h"
 #include "shade/post/denoise.h"
 #include "shade/scene/scene.h"

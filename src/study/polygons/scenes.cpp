@@ -1,7 +1,7 @@
 #include "assemble/scene_file.h"
 #include "march/brick/brick_intersector.h"
 #include "march/file/sdf_grid.h"
-#include "march/reference/sphere_intersector.h"
+#include "march/reference/reference_intersectors.h"
 #include "shade/finish/named_brdf.h"
 #include "study/cost/times.h"
 #include "study/picture/image_error.h"

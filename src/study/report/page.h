@@ -1,7 +1,7 @@
 // The HTML page of a study: text, tables, plots and pictures in one file.
 #pragma once
 
-#include "report/text/svg_plot.h"
+#include "report/text/html_page.h"
 #include "study/report/table.h"
 #include "study/study.h"
 

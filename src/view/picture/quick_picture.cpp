@@ -2,7 +2,7 @@
 
 #include "base/parallel_for.h"
 #include "shade/camera/filter.h"
-#include "shade/camera/primary_rays.h"
+#include "shade/camera/ray_streams.h"
 #include "shade/camera/sampler.h"
 #include "shade/film/tonemap.h"
 #include "shade/integrator/ambient_occlusion.h"

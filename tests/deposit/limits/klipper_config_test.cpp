@@ -1,4 +1,4 @@
-#include "deposit/limits/klipper.h"
+#include "deposit/limits/limit_files.h"
 
 #include "deposit/limits/printer_files.h"
 

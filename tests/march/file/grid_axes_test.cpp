@@ -3,8 +3,7 @@
 #include "base/error.h"
 #include "march/brick/brick_intersector.h"
 #include "march/file/level_set_file.h"
-#include "march/reference/sphere_intersector.h"
-#include "march/reference/vdb_intersector.h"
+#include "march/reference/reference_intersectors.h"
 #include "random_rays.h"
 #include "rubble.h"
 

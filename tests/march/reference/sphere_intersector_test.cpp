@@ -1,4 +1,4 @@
-#include "march/reference/sphere_intersector.h"
+#include "march/reference/reference_intersectors.h"
 
 #include "base/error.h"
 #include "march/brick/brick_intersector.h"

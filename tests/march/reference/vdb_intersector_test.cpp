@@ -1,4 +1,4 @@
-#include "march/reference/vdb_intersector.h"
+#include "march/reference/reference_intersectors.h"
 
 #include "base/error.h"
 #include "spheres.h"

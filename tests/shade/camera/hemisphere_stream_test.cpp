@@ -1,4 +1,4 @@
-#include "shade/camera/hemisphere_stream.h"
+#include "shade/camera/ray_streams.h"
 
 #include "on_each_target.h"
 #include "shade/camera/sampling.h"

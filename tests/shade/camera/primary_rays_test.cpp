@@ -1,4 +1,4 @@
-#include "shade/camera/primary_rays.h"
+#include "shade/camera/ray_streams.h"
 
 #include "on_each_target.h"
 

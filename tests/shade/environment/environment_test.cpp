@@ -4,7 +4,7 @@
 #include "scratch_folder.h"
 #include "shade/camera/sampler.h"
 #include "shade/camera/sampling.h"
-#include "shade/environment/studio.h"
+#include "shade/environment/studio_and_sky.h"
 #include "shade/frame.h"
 
 #include "shade/sphere_checks.h"

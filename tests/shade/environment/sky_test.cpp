@@ -1,7 +1,6 @@
-#include "shade/environment/sky.h"
+#include "shade/environment/studio_and_sky.h"
 
 #include "shade/camera/sampling.h"
-#include "shade/environment/studio.h"
 #include "shade/light/light.h"
 
 #include <gtest/gtest.h>

@@ -3,7 +3,7 @@
 #include "shade/scene/scene.h"
 
 #include "shade/analytic_prints.h"
-#include "shade/environment/studio.h"
+#include "shade/environment/studio_and_sky.h"
 #include "shade/integrator/path.h"
 #include "shade/integrator/render.h"
 #include "shade/mean_radiance.h"

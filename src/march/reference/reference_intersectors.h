@@ -1,7 +1,4 @@
-// Sphere tracing of the trilinear field: the classic method, for comparison.
-//
-// J. C. Hart, "Sphere Tracing" (The Visual Computer 12, 1996); over-relaxed as in B. Keinert et al., "Enhanced Sphere
-// Tracing" (STAG 2014). Empty nodes of the tree are left in one step.
+// Intersectors to compare with.
 #pragma once
 
 #include "trace/intersector.h"
@@ -11,6 +8,18 @@
 #include <memory>
 
 namespace stratum::march {
+
+// The reference intersector: OpenVDB's own LevelSetRayIntersector behind trace::Intersector.
+
+/// Traces with openvdb::tools::LevelSetRayIntersector (Museth 2014, HDDA) and returns the geometric normal of the
+/// trilinear field in the hit's cell. Keeps a reference to the grid. Throws InputError for grids that
+/// requireTraceable() refuses.
+std::unique_ptr<trace::Intersector> makeVdbIntersector(openvdb::FloatGrid::ConstPtr grid);
+
+// Sphere tracing of the trilinear field: the classic method, for comparison.
+//
+// J. C. Hart, "Sphere Tracing" (The Visual Computer 12, 1996); over-relaxed as in B. Keinert et al., "Enhanced Sphere
+// Tracing" (STAG 2014). Empty nodes of the tree are left in one step.
 
 /// At hits the field is below a thousandth of a voxel; along grazing rays the error is larger. Steps along a surface
 /// shrink with the distance: a ray that has not arrived after 2000 steps counts as a miss. Thin features between two
