@@ -9,44 +9,30 @@ namespace stratum::tools {
 
 void addFilmOptions(CLI::App& app, FilmCommand& film, assemble::HotEndLook& nozzle) {
     const char* group = "Film";
-    app.add_option(
-           "--film", film.output,
+    const auto option = [&](const char* name, auto& value, const char* type, const char* help) {
+        return app.add_option(name, value, help)->type_name(type)->group(group);
+    };
+    option("--film", film.output, "FILE",
            "Instead of pictures a film: .mp4, .webm or .gif by the system's ffmpeg, or an animated .png. Of G-code "
-           "the print grows, a level set turns, unless --grow, --turntable or --camera-path say otherwise")
-        ->type_name("FILE")
-        ->group(group);
-    app.add_option("--seconds", film.seconds, "How long (default 8, or as long as --camera-path)")
+           "the print grows, a level set turns, unless --grow, --turntable or --camera-path say otherwise");
+    option("--seconds", film.seconds, "S", "How long (default 8, or as long as --camera-path)")
         ->check(CLI::Range(0.0, 86400.0))
-        ->each([&film](const std::string&) { film.seconds_given = true; })
-        ->type_name("S")
-        ->group(group);
-    app.add_option("--fps", film.rate, "Frames a second (default 30, of .gif and .png 20)")
-        ->check(CLI::Range(1, 240))
-        ->type_name("N")
-        ->group(group);
-    app.add_option("--grow", film.grow,
-                   "G-code: the print grows bead by bead, by the time that it takes to print, by filament, or at a "
-                   "steady pace upwards, each layer in the same time")
-        ->check(oneOf(kGrowths))
-        ->type_name("time|filament|layers")
-        ->group(group);
-    app.add_option("--hold", film.hold,
-                   "G-code: how long the finished print is shown at the end (default 1, of films of less than 4 s 0)")
-        ->check(CLI::Range(0.0, 86400.0))
-        ->type_name("S")
-        ->group(group);
-    app.add_option(
-           "--ease", film.ease,
+        ->each([&film](const std::string&) { film.seconds_given = true; });
+    option("--fps", film.rate, "N", "Frames a second (default 30, of .gif and .png 20)")->check(CLI::Range(1, 240));
+    option("--grow", film.grow, "time|filament|layers",
+           "G-code: the print grows bead by bead, by the time that it takes to print, by filament, or at a "
+           "steady pace upwards, each layer in the same time")
+        ->check(oneOf(kGrowths));
+    option("--hold", film.hold, "S",
+           "G-code: how long the finished print is shown at the end (default 1, of films of less than 4 s 0)")
+        ->check(CLI::Range(0.0, 86400.0));
+    option("--ease", film.ease, "S",
            "The print grows, and the camera turns, ever faster during the first S seconds and slower during the "
            "last (default 0: evenly)")
-        ->check(CLI::Range(0.0, 86400.0))
-        ->type_name("S")
-        ->group(group);
-    app.add_option("--camera-path", film.camera_path,
-                   "The camera moves smoothly through {\"keys\": [{\"time\": 0, \"eye\": [X,Y,Z], \"look_at\": ..., "
-                   "\"up\": ..., \"fov\": ...}, ...]}")
-        ->type_name("FILE.json")
-        ->group(group);
+        ->check(CLI::Range(0.0, 86400.0));
+    option("--camera-path", film.camera_path, "FILE.json",
+           "The camera moves smoothly through {\"keys\": [{\"time\": 0, \"eye\": [X,Y,Z], \"look_at\": ..., "
+           "\"up\": ..., \"fov\": ...}, ...]}");
     const auto hot_end = [&](const char* name, assemble::HotEndKind kind, const char* help) {
         return app
             .add_flag_callback(
