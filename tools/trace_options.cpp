@@ -182,10 +182,8 @@ void applyTurns(TraceCommand& o) {
 
 void addMaterialOptions(CLI::App& app) {
     const Declarations light(app, kLight);
-    completes(light("--integrator", "NAME",
-                    "path, direct, phong, ao, normal, depth, position, mask, layer, tool, feature (default path)"),
-              Completion::word,
-              {"path", "direct", "phong", "ao", "normal", "depth", "position", "mask", "layer", "tool", "feature"});
+    completes(light("--integrator", "NAME", fmt::format("{} (default path)", fmt::join(shade::kIntegratorNames, ", "))),
+              Completion::word, {shade::kIntegratorNames.begin(), shade::kIntegratorNames.end()});
     light("--bounces", "N", "path: scattering events (default 3)");
     light.flag("--exact-translucency",
                "path: follow all light in translucent plastic to its end; without it, light that has met four "

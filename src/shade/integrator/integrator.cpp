@@ -12,15 +12,8 @@
 
 #include <array>
 #include <cmath>
-#include <string_view>
 
 namespace stratum::shade {
-namespace {
-
-constexpr std::array<std::string_view, 11> kIntegratorNames = {"path",     "direct", "phong", "ao",   "normal", "depth",
-                                                               "position", "mask",   "layer", "tool", "feature"};
-
-}  // namespace
 
 void IntegratorOptions::validate() const {
     if (std::find(kIntegratorNames.begin(), kIntegratorNames.end(), name) == kIntegratorNames.end())

@@ -7,11 +7,13 @@
 #include "shade/scene/surface.h"
 #include "trace/intersector.h"
 
+#include <array>
 #include <cstdint>
 #include <limits>
 #include <memory>
 #include <span>
 #include <string>
+#include <string_view>
 
 namespace stratum::shade {
 
@@ -41,8 +43,11 @@ struct PhongOptions {
     float reflective = 0.2f;                                ///< kr, weight of the mirror term, in [0, 1]
 };
 
+inline constexpr std::array<std::string_view, 11> kIntegratorNames = {
+    "path", "direct", "phong", "ao", "normal", "depth", "position", "mask", "layer", "tool", "feature"};
+
 struct IntegratorOptions {
-    std::string name = "path";  ///< path, direct, phong, ao, normal, depth, position, mask, layer, tool, feature
+    std::string name = "path";  ///< one of kIntegratorNames
     int bounces = 3;            ///< path: scattering events, 1 to 64. 1 is direct light
     PhongOptions phong;
     double ao_distance = std::numeric_limits<double>::infinity();  ///< ao: world units; farther surfaces don't occlude
