@@ -17,14 +17,13 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "shade/film/picture.h"
+#include "shade/integrator/integrator.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <filesystem>
 #include <string>
-#include <string_view>
 #include <vector>
 
 namespace {
@@ -61,14 +60,10 @@ void checkNozzle(const tools::TraceCommand& o) {
     if (o.objects.size() > 1 || (o.objects.size() == 1 && !o.objects.front().placement.isIdentity()))
         throw UsageError("--nozzle is of one print alone, which stands where its file says");
     if (!o.file_up.empty()) throw UsageError("--nozzle stands above a print, whose z is up; leave out --file-up");
-    constexpr std::array<std::string_view, 3> kOfLight = {"path", "direct", "phong"};
-    const std::string& integrator = o.render.integrator.name;
-    if (o.nozzle.kind == assemble::HotEndKind::clear &&
-        std::find(kOfLight.begin(), kOfLight.end(), integrator) == kOfLight.end())
+    if (o.nozzle.kind == assemble::HotEndKind::clear && !shade::needsLight(o.render.integrator))
         throw UsageError(
-            fmt::format("--clear-nozzle is drawn into pictures of light, not of --integrator {}; write "
-                        "--nozzle",
-                        integrator));
+            fmt::format("--clear-nozzle is drawn into pictures of light, not of --integrator {}; write --nozzle",
+                        o.render.integrator.name));
 }
 
 // What is asked of the pictures fits together. Before the work.
