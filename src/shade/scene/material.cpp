@@ -27,24 +27,10 @@ constexpr float kBrightest = 0.95f;           // no filament reflects everything
 const Color kNeutral(0.18f);                  // of values that are no numbers
 
 /// Similar to the usual colors of slicers.
-struct FeatureColor {
-    std::string_view name;
-    std::uint32_t color;
-};
-constexpr std::array<FeatureColor, 14> kFeatureColors = {{{"perimeter", 0xe8cf3d},
-                                                          {"external-perimeter", 0xe87a2c},
-                                                          {"overhang-perimeter", 0x3a48d6},
-                                                          {"infill", 0xa83232},
-                                                          {"solid-infill", 0x8c52c4},
-                                                          {"top-infill", 0xe04848},
-                                                          {"bridge", 0x4a80c0},
-                                                          {"gap-fill", 0xe8e8e8},
-                                                          {"ironing", 0xe89070},
-                                                          {"skirt", 0x0a8a70},
-                                                          {"brim", 0x0a8a70},
-                                                          {"support", 0x40b840},
-                                                          {"support-interface", 0x1e7a1e},
-                                                          {"wipe-tower", 0xa8d8a0}}};
+constexpr std::string_view kFeatureColors =
+    "perimeter#e8cf3d external-perimeter#e87a2c overhang-perimeter#3a48d6 infill#a83232 solid-infill#8c52c4 "
+    "top-infill#e04848 bridge#4a80c0 gap-fill#e8e8e8 ironing#e89070 skirt#0a8a70 brim#0a8a70 support#40b840 "
+    "support-interface#1e7a1e wipe-tower#a8d8a0";
 
 /// The number of a key of `each`: itself, or the index of a name.
 int valueOf(const std::string& key, const MaterialOptions& options, const trace::AttributeSummary& summary) {
@@ -64,8 +50,9 @@ int valueOf(const std::string& key, const MaterialOptions& options, const trace:
 Color colorOfInteger(int value, const trace::AttributeSummary& summary) {
     const auto id = static_cast<std::size_t>(value);
     if (id < summary.labels.size())
-        for (const FeatureColor& named : kFeatureColors)
-            if (named.name == summary.labels[id]) return fromSrgb(named.color);
+        for (const std::string_view named : split(kFeatureColors, ' '))
+            if (named.substr(0, named.find('#')) == summary.labels[id])
+                return *parseNamedColor(named.substr(named.find('#')));
     return categoryColor(id);
 }
 
