@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <array>
+#include <initializer_list>
 #include <utility>
 
 namespace stratum::assemble {
@@ -69,28 +70,20 @@ private:
     };
 
     static Place placeOf(std::string_view name) {
-        static constexpr std::array<std::pair<std::string_view, Place>, 20> kPlaces = {
-            {{"seconds", {kTop, "time"}},
-             {"brdf", {kTop, "material"}},
-             {"view", {kCamera, "view"}},
-             {"eye", {kCamera, "eye"}},
-             {"look_at", {kCamera, "look_at"}},
-             {"up", {kCamera, "up"}},
-             {"fov", {kCamera, "fov"}},
-             {"zoom", {kCamera, "zoom"}},
-             {"aperture", {kCamera, "aperture"}},
-             {"f_number", {kCamera, "f_number"}},
-             {"focus", {kCamera, "focus"}},
-             {"frame", {kCamera, "frame"}},
-             {"env", {kEnvironment, "map"}},
-             {"env_rotation", {kEnvironment, "rotation"}},
-             {"env_exposure", {kEnvironment, "exposure"}},
-             {"integrator", {kIntegrator, "name"}},
-             {"bounces", {kIntegrator, "bounces"}},
-             {"phong", {kIntegrator, "phong"}},
-             {"ao_distance", {kIntegrator, "ao_distance"}},
-             {"exact_translucency", {kIntegrator, "exact_translucency"}}}};
-        if (const auto place = valueOf(kPlaces, name)) return *place;
+        // What is called otherwise here than in Python.
+        static constexpr Names<Place, 6> kOthers = {{{"seconds", {kTop, "time"}},
+                                                     {"brdf", {kTop, "material"}},
+                                                     {"env", {kEnvironment, "map"}},
+                                                     {"env_rotation", {kEnvironment, "rotation"}},
+                                                     {"env_exposure", {kEnvironment, "exposure"}},
+                                                     {"integrator", {kIntegrator, "name"}}}};
+        if (const auto place = valueOf(kOthers, name)) return *place;
+        const auto isOneOf = [name](std::initializer_list<std::string_view> names) {
+            return std::find(names.begin(), names.end(), name) != names.end();
+        };
+        if (isOneOf({"view", "eye", "look_at", "up", "fov", "zoom", "aperture", "f_number", "focus", "frame"}))
+            return {kCamera, name};
+        if (isOneOf({"bounces", "phong", "ao_distance", "exact_translucency"})) return {kIntegrator, name};
         return {kTop, name};
     }
 

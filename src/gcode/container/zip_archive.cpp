@@ -10,7 +10,6 @@
 #include <array>
 #include <map>
 #include <string>
-#include <system_error>
 #include <utility>
 
 namespace stratum::gcode {
