@@ -108,7 +108,6 @@ void takeAskedColors(const ReadOptions& options, const std::vector<MixChange>& m
 // BambuStudio and OrcaSlicer label objects by number in the text; the names stand beside it. Equal names get their
 // numbers, so that each can be chosen.
 void nameObjects(const Program& program, Toolpath& toolpath) {
-    constexpr std::string_view kLabel = "unique label id: ";
     std::unordered_map<std::string_view, std::string_view> names;  // by number
     std::unordered_map<std::string_view, std::size_t> uses;
     for (const auto& [number, name] : program.facts.object_names) {
@@ -116,8 +115,8 @@ void nameObjects(const Program& program, Toolpath& toolpath) {
         ++uses[name];
     }
     for (std::string& object : toolpath.objects) {
-        if (!object.starts_with(kLabel)) continue;
-        const std::string number = object.substr(kLabel.size());
+        if (!object.starts_with(kObjectNumber)) continue;
+        const std::string number = object.substr(kObjectNumber.size());
         const auto named = names.find(number);
         if (named == names.end()) continue;
         object = uses[named->second] > 1 ? fmt::format("{} {}", named->second, number) : std::string(named->second);

@@ -52,7 +52,7 @@ void BeadRecorder::tag(const Tag& tag, std::uint32_t line) {
             startObject(tag.text, line);
             break;
         case Tag::Kind::object_stop:
-            stopObject();
+            if (!isSecondMark(tag.text)) stopObject();
             break;
         case Tag::Kind::color_change:
             changeColor(tag.tool < 0 ? next_.tool : static_cast<std::uint8_t>(tag.tool), parseColor(tag.text), line);
@@ -190,8 +190,14 @@ std::size_t BeadRecorder::levels(std::size_t most) const {
     return count;
 }
 
+bool BeadRecorder::isSecondMark(std::string_view name) const {
+    return name.starts_with(kObjectNumber) && next_.object != 0 &&
+           !toolpath_.objects[next_.object].starts_with(kObjectNumber);
+}
+
 void BeadRecorder::startObject(std::string_view name, std::uint32_t line) {
     constexpr std::size_t kMaxObjects = std::numeric_limits<std::uint16_t>::max();
+    if (isSecondMark(name)) return;
     const auto [entry, added] = object_index_.try_emplace(std::string(name), std::uint16_t{0});
     if (added) {
         if (toolpath_.objects.size() > kMaxObjects) {

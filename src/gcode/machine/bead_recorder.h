@@ -62,6 +62,8 @@ public:
     const std::vector<double>& runZ() const { return run_z_; }
 
 private:
+    /// The number of an object that its name has marked already: OrcaSlicer writes both.
+    bool isSecondMark(std::string_view name) const;
     void changeColor(std::uint8_t tool, std::optional<Rgb> color, std::uint32_t line);
     static double intendedHeight(double mm);
     double squeezed(double height) const;

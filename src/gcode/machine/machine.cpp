@@ -5,6 +5,7 @@
 #include "gcode/slicer/slicer_tags.h"
 #include "gcode/text/known_commands.h"
 #include "gcode/text/limits.h"
+#include "gcode/text/number.h"
 
 #include <fmt/format.h>
 
@@ -106,7 +107,7 @@ void Machine::run(const Line& line) {
     // The comment first: Slic3r writes the feature of a move behind the move.
     if (!line.comment.empty()) {
         if (const Tag tag = parseTag(line.comment); tag.kind != Tag::Kind::none) heed(tag, line);
-        if (moves_ != nullptr) tellElapsed(line.comment);
+        if (moves_ != nullptr) tellTime(line.comment);
     }
     std::optional<std::size_t> workspace;
     for (std::size_t i = 0; i < line.count; ++i) {
@@ -122,10 +123,23 @@ void Machine::run(const Line& line) {
     if (line.unreadable && line.count == 0) warnUnreadable(line);
 }
 
-void Machine::tellElapsed(std::string_view comment) {
+void Machine::tellTime(std::string_view comment) {
     constexpr std::string_view kElapsed = "TIME_ELAPSED:";
-    if (!comment.starts_with(kElapsed)) return;
-    if (const auto seconds = parseDuration(comment.substr(kElapsed.size()))) moves_->elapsed(*seconds);
+    if (comment.starts_with(kElapsed)) {
+        if (const auto seconds = parseDuration(comment.substr(kElapsed.size()))) moves_->elapsed(*seconds);
+        return;
+    }
+    // Bambu's printers with two nozzles flush by themselves; what that takes, the slicer writes as moves of E that the
+    // printer skips: ";VG1 E4 F299".
+    constexpr std::string_view kFlush = "VG1 E";
+    if (!comment.starts_with(kFlush)) return;
+    const auto f = comment.find('F');
+    double length = 0;
+    double speed = 0;
+    const char* at = comment.data() + kFlush.size();
+    if (f == std::string_view::npos || !parseNumber(at, comment.data() + comment.size(), length)) return;
+    at = comment.data() + f + 1;
+    if (parseNumber(at, comment.data() + comment.size(), speed)) moves_->flush(length, speed / 60, line_);
 }
 
 void Machine::warnUnreadable(const Line& line) {

@@ -100,7 +100,7 @@ private:
     void setPosition(const Command& command);
     void setAbsolute(const Command& command);
     void remarkForeign(const Command& command);
-    void tellElapsed(std::string_view comment);
+    void tellTime(std::string_view comment);
     void warnUnreadable(const Line& line);
     void setHeatOrFan(const Command& command);
     void setHomeOffset(const Command& command);
@@ -180,6 +180,7 @@ private:
     Frame frame_;
     Plane plane_;
     double e_ = 0;
+    bool e_begun_ = false;                 // something has moved it
     std::array<double, 256> e_by_tool_{};  // when MakerBot's commands changed it
     std::optional<double> tool_e_;         // of the tool since then, until an E tells whether it counts
     double unit_ = 1;                      // mm in one unit of the program

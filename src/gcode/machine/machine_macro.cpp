@@ -87,6 +87,12 @@ void Machine::executeMacro(const Command& command) {
         if (heater.starts_with("extruder"))
             recorder_.heat(static_cast<double>(trailingNumber(heater)),
                            numberArgument(command.text, "TARGET").value_or(0), line_);
+    } else if (same(name, "SYNC")) {  // Bambu's: "SYNC T10"
+        std::string_view text = command.text;
+        text.remove_prefix(std::min(text.find_first_of("Tt"), text.size()));
+        const char* p = text.data() + std::min<std::size_t>(1, text.size());
+        double seconds = 0;
+        if (moves_ != nullptr && parseNumber(p, text.data() + text.size(), seconds)) moves_->wait(seconds);
     } else if (moves_ != nullptr && same(name, "PAUSE")) {
         moves_->pause(line_);
     } else if (moves_ != nullptr && same(name, "SET_VELOCITY_LIMIT")) {

@@ -68,6 +68,14 @@ double Machine::takeExtrusion(const Command& command) {
         if (e_absolute_ && std::abs(value - *tool_e_) <= std::abs(value - e_)) e_ = *tool_e_;
         tool_e_.reset();
     }
+    if (!e_begun_ && e_absolute_ && e_ == 0 && settings_.extrusion.cut) {
+        warn(
+            fmt::format("the first E is {:g}, far more than a line holds: the program is a part of another that counts "
+                        "E from before; E counts from there",
+                        command.value(letter)));
+        e_ = value;
+    }
+    e_begun_ = true;
     const double extrusion = e_absolute_ ? value - e_ : value;
     if (!(std::abs(extrusion) <= kMaxExtrusion))
         refuse(fmt::format("{}{} is no extrusion (limit {} in one move); is the file damaged?", letter,

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <utility>
+#include <vector>
 
 namespace stratum::gcode {
 namespace {
@@ -15,6 +16,11 @@ constexpr double kSlowest = 0.01;            // mm/s; no firmware goes slower
 constexpr double kStandstill = 1e-12;        // mm
 constexpr double kLongestRetraction = 1000;  // mm
 constexpr std::array<char, kMotionAxes> kLetters{'X', 'Y', 'Z', 'E'};
+
+/// s of a filament.
+double timeOf(const std::vector<double>& times, std::size_t tool) {
+    return times.empty() ? 0.0 : times[std::min(tool, times.size() - 1)];
+}
 
 // Commands that stop the machine for an unknown time: homing, probing, heating, pauses.
 bool rests(const Command& command) {
@@ -148,6 +154,10 @@ void MotionRecorder::runRetraction(const Retraction& retraction, double sign, st
     sink_.move(move);
 }
 
+void MotionRecorder::flush(double length, double speed, std::uint32_t line) {
+    runRetraction({.length = std::min(length, kLongestRetraction), .speed = std::max(speed, 0.0)}, 1, line);
+}
+
 void MotionRecorder::dwell(const Command& command, std::uint32_t line) {
     double seconds = 0;
     if (command.hasValue('P')) seconds = command.value('P') / 1000;
@@ -252,14 +262,30 @@ void MotionRecorder::velocityLimit(const VelocityLimit& limit, std::uint32_t lin
 }
 
 void MotionRecorder::changeTool(std::size_t from, std::size_t to, std::uint32_t line) {
-    const auto at = [](const std::vector<double>& times, std::size_t tool) {
-        return times.empty() ? 0.0 : times[std::min(tool, times.size() - 1)];
-    };
+    if (!settings_.extruders.empty()) {
+        changeFilament(to, line);
+        return;
+    }
     if (from == to) return;
     sink_.stop(Stop::tool_change, line);
     const bool loaded = changed_ || !settings_.parked;
     changed_ = true;
-    sink_.wait((loaded ? at(settings_.unload, from) : 0.0) + at(settings_.load, to) + settings_.change);
+    sink_.wait((loaded ? timeOf(settings_.unload, from) : 0.0) + timeOf(settings_.load, to) + settings_.change);
+}
+
+void MotionRecorder::changeFilament(std::size_t to, std::uint32_t line) {
+    const std::vector<std::size_t>& extruders = settings_.extruders;
+    const std::size_t extruder = to < extruders.size() ? extruders[to] : extruders.front();
+    const std::optional<std::size_t> before = extruder_;
+    const auto [held, empty] = filaments_.try_emplace(extruder, to);
+    if (before == extruder && !empty && held->second == to) return;
+    sink_.stop(Stop::tool_change, line);
+    double seconds = before && before != extruder ? settings_.change : 0.0;
+    if (empty || held->second != to) seconds += timeOf(settings_.load, to);
+    if (!empty && held->second != to) seconds += timeOf(settings_.unload, held->second);
+    extruder_ = extruder;
+    held->second = to;
+    sink_.wait(seconds);
 }
 
 void MotionRecorder::pressureAdvance(std::string_view what, double seconds, std::uint32_t line) {

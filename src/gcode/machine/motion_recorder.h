@@ -11,7 +11,9 @@
 #include "gcode/toolpath/frame.h"
 #include "gcode/toolpath/warning_log.h"
 
+#include <cstddef>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string_view>
 
@@ -46,6 +48,10 @@ public:
     void retraction(const RetractionChange& change);
     void changeTool(std::size_t from, std::size_t to, std::uint32_t line);
     void pause(std::uint32_t line) { sink_.stop(Stop::pause, line); }
+    /// Filament that the printer pushes out by itself: mm, mm/s.
+    void flush(double length, double speed, std::uint32_t line);
+    /// Bambu's SYNC: what such work takes besides.
+    void wait(double seconds) { sink_.wait(std::clamp(seconds, 0.0, kLongestWait)); }
     void elapsed(double seconds) { sink_.elapsed(seconds); }
     /// `seconds`: as `what` has it in the file, M900 K or the like.
     void pressureAdvance(std::string_view what, double seconds, std::uint32_t line);
@@ -75,6 +81,9 @@ private:
     /// False if the value is impossible.
     bool take(Limit limit, std::string_view what, double value, std::uint32_t line);
     void change(Limit limit, double value, std::uint32_t line);
+    /// A change of filament on a printer with several extruders, as Bambu Studio and OrcaSlicer estimate it: filament
+    /// is unloaded and loaded only where the extruder had another.
+    void changeFilament(std::size_t to, std::uint32_t line);
     bool isKlipper() const { return limits_.rule == CornerRule::corner_velocity; }
     void suggest(CornerRule rule);
 
@@ -89,7 +98,9 @@ private:
     Retraction retract_;
     Retraction recover_;
     bool retracted_ = false;
-    bool changed_ = false;  // the tool
+    bool changed_ = false;                          // the tool
+    std::optional<std::size_t> extruder_;           // where there are several
+    std::map<std::size_t, std::size_t> filaments_;  // in each of them
 };
 
 }  // namespace stratum::gcode

@@ -174,9 +174,17 @@ private:
             if (const auto time = number(value, 0, kLongestWait)) settings_.load = {*time};
         } else if (key == "machine_unload_filament_time") {
             if (const auto time = number(value, 0, kLongestWait)) settings_.unload = {*time};
-        } else if (key == "machine_tool_change_time") {
+        } else if (key == "machine_tool_change_time" || key == "machine_switch_extruder_time") {
             if (const auto time = number(value, 0, kLongestWait)) settings_.change = *time;
+        } else if (key == "filament_map") {
+            mapFilaments(value);
         }
+    }
+
+    void mapFilaments(std::string_view value) {
+        const std::vector<double> extruders = numbersOf(value, 1, 16);
+        if (extruders.empty() || std::ranges::count(extruders, extruders.front()) == std::ssize(extruders)) return;
+        settings_.extruders.assign(extruders.begin(), extruders.end());
     }
 
     void limit(std::string_view key, std::string_view kind, std::string_view value) {

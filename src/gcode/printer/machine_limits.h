@@ -18,16 +18,17 @@ constexpr double kLongestAdvance = 5;  // s, of pressure advance
 
 struct MachineSettings {
     MachineLimits limits;
-    LimitOrigins origins;              ///< of these
-    double most_printing = 0;          ///< mm/s^2 that M204 can't exceed; 0: no bound
-    double most_travel = 0;            ///< mm/s^2, likewise
-    bool feedrate_per_minute = false;  ///< M203 counts mm/min (RepRapFirmware, Sprinter)
-    bool states_jerk = false;          ///< limits.jerk is from the file
-    bool rule_chosen = false;          ///< limits.rule is fixed: commands don't change it
-    std::vector<double> load;          ///< s by tool; may be short
-    std::vector<double> unload;        ///< s by tool; may be short
-    double change = 0;                 ///< s, of every change of tool
-    bool parked = false;               ///< filaments are, so that the first change unloads nothing (PrusaSlicer)
+    LimitOrigins origins;                ///< of these
+    double most_printing = 0;            ///< mm/s^2 that M204 can't exceed; 0: no bound
+    double most_travel = 0;              ///< mm/s^2, likewise
+    bool feedrate_per_minute = false;    ///< M203 counts mm/min (RepRapFirmware, Sprinter)
+    bool states_jerk = false;            ///< limits.jerk is from the file
+    bool rule_chosen = false;            ///< limits.rule is fixed: commands don't change it
+    std::vector<double> load;            ///< s by tool; may be short
+    std::vector<double> unload;          ///< s by tool; may be short
+    double change = 0;                   ///< s, of every change of tool; with extruders: of every change of these
+    std::vector<std::size_t> extruders;  ///< by filament, of a printer with several (Bambu's, filament_map); else empty
+    bool parked = false;                 ///< filaments are, so that the first change unloads nothing (PrusaSlicer)
 };
 
 /// By what a slicer is known to plan its times, whatever the printer's own limits.

@@ -3,6 +3,7 @@
 #include "gcode/text/lexer.h"
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 
 namespace stratum::gcode {
@@ -51,6 +52,54 @@ private:
     std::optional<double> last_;
 };
 
+// Whether the first E is where a part of a program begins that counts absolute E from before: far more a length than
+// what follows. Marlin lays nothing in such a move, either (EXTRUDE_MAXLENGTH, 200 mm).
+class Beginning {
+public:
+    // A move with E. False once all is known.
+    bool extrude(const Command& command) {
+        const double e = command.value('E');
+        const double length = go(command);
+        if (moves_ == 0) {
+            first_ = command.has('X') || command.has('Y') ? e : 0;
+            first_length_ = length;
+        } else {
+            filament_ += std::max(e - e_, 0.0);
+            length_ += length;
+        }
+        e_ = e;
+        ++moves_;
+        return open();
+    }
+    void travel(const Command& command) { go(command); }
+    bool open() const { return first_ > kFirst && moves_ < kMoves; }
+
+    bool cut() const {
+        constexpr double kMore = 10;
+        return first_ > kFirst && moves_ >= kFewest && filament_ > 0 &&
+               first_ * length_ > kMore * filament_ * first_length_;
+    }
+
+private:
+    static constexpr double kFirst = 200;  // mm
+    static constexpr int kMoves = 12;
+    static constexpr int kFewest = 4;
+
+    double go(const Command& command) {
+        const double x = command.hasValue('X') ? command.value('X') : x_;
+        const double y = command.hasValue('Y') ? command.value('Y') : y_;
+        const double length = std::hypot(x - x_, y - y_);
+        x_ = x;
+        y_ = y;
+        return length;
+    }
+
+    double x_ = 0, y_ = 0, e_ = 0;
+    double first_ = 0, first_length_ = 0;
+    double filament_ = 0, length_ = 0;  // of the moves behind the first
+    int moves_ = 0;
+};
+
 class Scanner {
 public:
     // False once all is known.
@@ -64,7 +113,8 @@ public:
             return true;
         }
         const bool plan = command.has('X') || command.has('Y');
-        if (command.hasValue('E')) return extrusion(plan, command.value('E'));
+        if (command.hasValue('E')) return extrusion(plan, command);
+        beginning_.travel(command);
         bare_on_ = bare_on_ || (plan && on_);
         if (plan && (command.hasValue('A') || command.hasValue('B'))) ab_ = true;
         return true;
@@ -75,7 +125,10 @@ public:
         // Skeinforge's own moves have no E; a purge in the start program may.
         if (bare_on_ && !e_on_ && !mode_) return {.drive = Drive::switched};
         if (!e_) return {.drive = ab_ && !spindle_ ? Drive::axes_ab : switch_ ? Drive::switched : Drive::e_word};
-        return {.falls_back = changes_.areIncrements(), .mode_follows = mode_follows_, .repeats = changes_.repeat()};
+        return {.falls_back = changes_.areIncrements(),
+                .mode_follows = mode_follows_,
+                .repeats = changes_.repeat(),
+                .cut = beginning_.cut()};
     }
 
 private:
@@ -87,15 +140,16 @@ private:
             mode_ = true;
             mode_follows_ = e_;
         }
-        return !(mode_ && e_);
+        return !(mode_ && e_ && !beginning_.open());
     }
 
-    bool extrusion(bool plan, double value) {
+    bool extrusion(bool plan, const Command& command) {
         e_ = true;
         e_on_ = e_on_ || on_;
-        if (mode_) return false;
-        changes_.add(plan, value);
-        return !changes_.enough();
+        const bool more = beginning_.extrude(command);
+        if (mode_) return more;
+        changes_.add(plan, command.value('E'));
+        return more || !changes_.enough();
     }
 
     bool motion_ = false;
@@ -109,6 +163,7 @@ private:
     bool spindle_ = false;  // then A and B turn what is milled
     bool e_ = false;
     Changes changes_;
+    Beginning beginning_;
 };
 
 // Finds lines that may have a command. All calls together search every byte once.

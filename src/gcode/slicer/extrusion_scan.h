@@ -27,6 +27,8 @@ struct ExtrusionScan {
     bool repeats = false;
     /// The same after a G90 that follows M83, which by Marlin's rules makes E absolute again.
     bool relative_after_g90 = false;
+    /// The first E, if it is absolute, is where a part of a longer program begins, and pushes nothing out.
+    bool cut = false;
 };
 
 /// Reads from the start as far as needed: to the first E if M82 or M83 came before, else over a few hundred moves, or

@@ -208,7 +208,10 @@ Tag parseTag(std::string_view comment) {
             if (take(text, "start printing object, ")) return ofObject(text);
             if (take(text, "segType:")) return ofSegment(text);
             if (text.starts_with("set units to ")) return {.kind = Tag::Kind::units_set};
-            if (take(text, "stop printing object")) return {.kind = Tag::Kind::object_stop};
+            if (take(text, "stop printing object")) {
+                take(text, ", ");
+                return {.kind = Tag::Kind::object_stop, .text = text};
+            }
             break;
         default:
             break;

@@ -10,6 +10,20 @@
 namespace stratum::gcode {
 namespace {
 
+// OrcaSlicer's marks for its own printers and for Bambu's, one behind the other.
+TEST(BeadRecorder, AnObjectThatIsMarkedTwiceIsOne) {
+    const Toolpath toolpath = readProgram(
+        "M83\nG1 Z.2\n; printing object a.stl id:4 copy 0\n; start printing object, unique label id: 16\nG1 X10 E1\n"
+        "; stop printing object a.stl id:4 copy 0\n; stop printing object, unique label id: 16\n"
+        "; printing object b.stl id:5 copy 0\n; start printing object, unique label id: 17\nG1 X20 E1\n"
+        "; stop printing object b.stl id:5 copy 0\n; printing object a.stl id:4 copy 0\n"
+        "; stop printing object, unique label id: 17\n; start printing object, unique label id: 16\nG1 X30 E1\n");
+    EXPECT_EQ(toolpath.objects, (std::vector<std::string>{"", "a.stl id:4 copy 0", "b.stl id:5 copy 0"}));
+    EXPECT_EQ(toolpath.runOf(toolpath.beads[0]).object, 1);
+    EXPECT_EQ(toolpath.runOf(toolpath.beads[1]).object, 2);
+    EXPECT_EQ(toolpath.runOf(toolpath.beads[2]).object, 1);
+}
+
 std::vector<std::uint32_t> layersOf(const Toolpath& toolpath) {
     std::vector<std::uint32_t> layers;
     for (const Bead& bead : toolpath.beads) layers.push_back(toolpath.runOf(bead).layer);

@@ -89,6 +89,22 @@ TEST(ExtrusionScan, EqualNumbersAreIncrements) {
     EXPECT_FALSE(fallsBackAfterG90("M83\nG90\n" + repeated));
 }
 
+TEST(ExtrusionScan, APartOfAProgramThatCountsEFromBefore) {
+    const std::string lines = "G1 X20 E723.9\nG1 Y20 E724.2\nG1 X10 E724.5\nG1 Y10 E724.8\n";
+    EXPECT_TRUE(scanExtrusion("M82\nG92 E0\nG1 X10 Y10 E723.6\n" + lines).cut);
+    EXPECT_TRUE(scanExtrusion("G1 X10 Y10 E723.6\n" + lines).cut);
+    EXPECT_FALSE(scanExtrusion("M82\nG1 X10 Y10 E0.6\n" + lines).cut);
+    // Large beads: each line holds as much.
+    EXPECT_FALSE(scanExtrusion("M82\nG1 X1000 E3000\nG1 Y1000 E6000\nG1 X0 E9000\nG1 Y0 E12000\n").cut);
+
+    const Toolpath part = readProgram("M82\nG92 E0\nG1 X10 Y10 Z0.2 E723.6\n" + lines);
+    EXPECT_EQ(warningCount(part, "the first E is 723.6"), 1U);
+    ASSERT_EQ(part.beads.size(), 4U);
+    EXPECT_NEAR(volumeOf(part, part.beads[0]), 0.3 * kFilamentArea, 1e-3);
+    // It says where it counts from.
+    EXPECT_EQ(readProgram("M82\nG92 E723.3\nG1 X10 Y10 Z0.2 E723.6\n" + lines).beads.size(), 5U);
+}
+
 TEST(ExtrusionScan, BeforeALateMode) {
     const ExtrusionScan rising = scanExtrusion("G92 E0\nG1 X1 E5\nG1 X9 E9\nM83\n" + moves(20, true));
     EXPECT_TRUE(rising.mode_follows);
