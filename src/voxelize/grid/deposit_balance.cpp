@@ -26,10 +26,15 @@ double thickness(const Layer& layer, double d) {
     return d < layer.radius ? 2 * (layer.half_side + std::sqrt(layer.radius * layer.radius - d * d)) : 0;
 }
 
-// Columns of 0.4 mm, whatever the voxels are.
-Lattice measuringLattice() {
+// Columns of 0.4 mm, whatever the voxels are; of large beads, as wide as the thinnest layer is high, so that a bead of
+// some width has as many points.
+Lattice measuringLattice(const gcode::Toolpath& toolpath) {
+    constexpr double kSpacing = 0.05;  // mm
+    double height = std::numeric_limits<double>::infinity();
+    for (const gcode::Run& run : toolpath.runs)
+        if (run.height > 0) height = std::min(height, static_cast<double>(run.height));
     Lattice lattice;
-    lattice.voxel_size = 0.05;
+    lattice.voxel_size = std::isfinite(height) ? std::max(kSpacing, height / kLeafDim) : kSpacing;
     lattice.half_width = 2;  // points lie up to a voxel beyond a leaf's outer samples
     return lattice;
 }
@@ -193,7 +198,7 @@ void addLayer(const LayerStack& stack, const LeafColumn::LayerPlan& plan, double
 template <typename Visit>
 void forEachOpenColumn(const gcode::Toolpath& toolpath, const LayerStack& stack, std::uint32_t end,
                        const Visit& visit) {
-    const Lattice lattice = measuringLattice();
+    const Lattice lattice = measuringLattice(toolpath);
     const PrintColumns columns(toolpath, stack, lattice, 1, LeafColumn::Kind::spread);
     columns.forEach(end, [&visit](std::size_t, LeafColumn& column) { visit(column); });
 }
@@ -213,7 +218,7 @@ double raisedIn(const LayerStack& stack, std::vector<OpenTop>& tops, const std::
 DepositBalance balanceDeposit(const gcode::Toolpath& toolpath, const LayerStack& stack, std::uint32_t end) {
     const std::size_t layers = toolpath.layer_count + std::size_t{1};
     tbb::enumerable_thread_specific<Sums> threads([layers] { return Sums(layers); });
-    const double point_area = pointArea(measuringLattice());
+    const double point_area = pointArea(measuringLattice(toolpath));
     forEachOpenColumn(toolpath, stack, end, [&](LeafColumn& column) {
         Sums& sums = threads.local();
         sums.tops.clear();
@@ -265,7 +270,7 @@ DepositBalance balanceDeposit(const gcode::Toolpath& toolpath, const LayerStack&
 
 double solidVolume(const gcode::Toolpath& toolpath, const LayerStack& stack, std::uint32_t end) {
     std::atomic<std::int64_t> sum{0};
-    const double point_area = pointArea(measuringLattice());
+    const double point_area = pointArea(measuringLattice(toolpath));
     forEachOpenColumn(toolpath, stack, end, [&](LeafColumn& column) {
         JoinedHeights joined(column);
         column.forEachLayer([&](const LeafColumn::LayerPlan& plan) { joined.add(plan); });
@@ -279,7 +284,7 @@ std::vector<float> overfillOfBeads(const gcode::Toolpath& toolpath, const LayerS
     // Sums in integers, as above: those of a bead are met in any order.
     std::vector<std::atomic<std::int64_t>> laid(toolpath.beads.size());
     tbb::enumerable_thread_specific<std::vector<double>> scratch;
-    const double point_area = pointArea(measuringLattice());
+    const double point_area = pointArea(measuringLattice(toolpath));
     const auto end = static_cast<std::uint32_t>(toolpath.beads.size());
     forEachOpenColumn(toolpath, stack, end, [&](LeafColumn& column) {
         column.forEachLayer([&](const LeafColumn::LayerPlan& plan) {

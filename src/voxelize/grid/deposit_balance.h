@@ -34,8 +34,9 @@ struct DepositBalance {
 
 /// Integrates the thickness of each layer, and divides it among the beads that claim a place, in proportion to their
 /// own thickness there.
-/// Of the beads before index `end`. From the plan fields themselves, at points of a lattice rule, 400 a mm^2: the same
-/// for every voxel size. Parallel; the result does not depend on the number of threads.
+/// Of the beads before index `end`. From the plan fields themselves, at points of a lattice rule: 400 a mm^2, of
+/// layers of more than 0.4 mm as many as fit 8 times in the thinnest one's height. The same for every voxel size.
+/// Parallel; the result does not depend on the number of threads.
 DepositBalance balanceDeposit(const gcode::Toolpath& toolpath, const LayerStack& stack, std::uint32_t end);
 
 /// The volume of the union of all beads, mm^3: each point of the plan has an interval of heights in each layer and in
