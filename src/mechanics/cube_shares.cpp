@@ -12,7 +12,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <optional>
 #include <tuple>
 
 namespace stratum::mechanics {
@@ -57,31 +56,6 @@ struct Inside {
     double from, to;
 };
 
-// A bead that is not of a layer: its distance has one minimum along z.
-std::optional<Inside> insideOf(const voxelize::BeadField& bead, const voxelize::Bounds& box, double x, double y) {
-    if (!(bead.planOffset(x, y) < bead.radius())) return std::nullopt;
-    const auto at = [&](double z) { return bead.distance(x, y, z); };
-    double low = box.min[2];
-    double high = box.max[2];
-    for (int n = 0; n < 40 && high - low > 1e-6; ++n) {
-        const double third = (high - low) / 3;
-        if (at(low + third) < at(high - third))
-            high -= third;
-        else
-            low += third;
-    }
-    const double middle = 0.5 * (low + high);
-    if (!(at(middle) < 0)) return std::nullopt;
-    const auto edge = [&](double inside, double outside) {
-        for (int n = 0; n < 24; ++n) {
-            const double half = 0.5 * (inside + outside);
-            (at(half) < 0 ? inside : outside) = half;
-        }
-        return inside;
-    };
-    return Inside{edge(middle, box.min[2]), edge(middle, box.max[2])};
-}
-
 class ColumnReader {
 public:
     /// `lines`: along each edge of a cube, odd. `gap`: mm, the plastic of layers that are so near is one.
@@ -123,11 +97,10 @@ private:
 
     void addBead(const gcode::Bead& bead, int i, int j) {
         const voxelize::BeadField field(toolpath_, bead);
-        const voxelize::Bounds box = field.bounds();
         for (std::size_t c = 0; c < kColumnSamples; ++c) {
             const double x = (i + static_cast<int>(c / kLeafDim)) * step();
             const double y = (j + static_cast<int>(c % kLeafDim)) * step();
-            if (const auto inside = insideOf(field, box, x, y)) inside_[c].push_back(*inside);
+            if (const auto met = field.heights(x, y)) inside_[c].push_back({met->z_min, met->z_max});
         }
     }
 

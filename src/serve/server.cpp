@@ -97,6 +97,9 @@ private:
         shared_.unanswered.remove(this);
         const Request& request = parser_->get();
         const auto host = std::string_view(request[http::field::host].data(), request[http::field::host].size());
+        // Of two, a proxy may have looked at the other.
+        if (request.count(http::field::host) > 1 || request.count(http::field::origin) > 1)
+            return refuse(http::status::bad_request, "one Host and one Origin");
         if (!shared_.access.knownHost(host)) return refuse(http::status::forbidden, "unknown host");
         const std::string_view target(request.target().data(), request.target().size());
         std::string_view rest;

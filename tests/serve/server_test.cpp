@@ -36,6 +36,10 @@ TEST(Server, ServesThePageToWhoHasTheToken) {
     test::PageAddress stranger = page;
     stranger.host = "evil.example";
     EXPECT_EQ(server.client().get(stranger, page.path), 403);
+    // A second one, of which a proxy may have seen the other.
+    test::RawClient two = server.client();
+    two.send("GET " + page.path + " HTTP/1.1\r\nHost: " + page.host + "\r\nHost: evil.example\r\n\r\n");
+    EXPECT_NE(two.readUntil("\r\n").find(" 400 "), std::string::npos);
 }
 
 TEST(Server, AConnectionAsksAgain) {

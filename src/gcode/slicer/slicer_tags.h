@@ -33,9 +33,9 @@ struct Tag {
     std::optional<double> z{};           ///< mm, of a layer change that names its z
     std::string_view text{};  ///< the feature's or object's name as written (also where an object ends); a new color as
                               ///< "#RRGGBB"; the words that mark a layer, which tell slicers' marks from each other
-    int tool = -1;      ///< of a color change; -1 is the current tool
-    bool bare = false;  ///< a feature's name alone, as Slic3r writes it behind each of its moves
-    bool raft = false;  ///< of a layer change: the layer is below the part (Cura's ";LAYER:-2")
+    int tool = -1;            ///< of a color change; -1 is the current tool
+    bool bare = false;        ///< a feature's name alone, as Slic3r writes it behind each of its moves
+    bool raft = false;        ///< of a layer change: the layer is below the part (Cura's ";LAYER:-2")
 };
 
 /// How an object begins that is marked by its number alone.

@@ -113,6 +113,10 @@ SceneDescription makeScene(const SceneOptions& options, const trace::Intersector
                            .transparent = options.transparent,
                            .catcher = std::nullopt,
                            .mm_per_unit = options.mm_per_unit};
+    constexpr std::size_t kMostLights = 1024;
+    if (options.lights.size() > kMostLights)
+        throw UsageError(fmt::format("{} lights; each is asked at each point that is seen, so at most {} can be given",
+                                     options.lights.size(), kMostLights));
     for (const std::string& light : options.lights) {
         if (const auto ambient = parseAmbient(light))
             scene.ambient += *ambient;

@@ -85,6 +85,8 @@ TEST(MakeScene, PassesErrorsOn) {
     shade::SceneOptions options;
     options.lights = {"lamp"};
     EXPECT_THROW(makeScene(options, ball, 64, 48), UsageError);
+    options.lights.assign(1025, "point:0,0,9,1,1,1");
+    EXPECT_THROW(makeScene(options, ball, 64, 48), UsageError);
 }
 
 }  // namespace
