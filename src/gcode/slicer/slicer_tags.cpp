@@ -139,6 +139,11 @@ Tag ofBareName(std::string_view text) {
 
 Tag ofObject(std::string_view name) { return {.kind = Tag::Kind::object_start, .text = name}; }
 
+Tag ofObjectEnd(std::string_view text) {
+    take(text, ", ");
+    return {.kind = Tag::Kind::object_stop, .text = text};
+}
+
 }  // namespace
 
 Tag parseTag(std::string_view comment) {
@@ -208,10 +213,7 @@ Tag parseTag(std::string_view comment) {
             if (take(text, "start printing object, ")) return ofObject(text);
             if (take(text, "segType:")) return ofSegment(text);
             if (text.starts_with("set units to ")) return {.kind = Tag::Kind::units_set};
-            if (take(text, "stop printing object")) {
-                take(text, ", ");
-                return {.kind = Tag::Kind::object_stop, .text = text};
-            }
+            if (take(text, "stop printing object")) return ofObjectEnd(text);
             break;
         default:
             break;
