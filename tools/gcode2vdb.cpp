@@ -277,8 +277,8 @@ void run(const tools::CommandSource& options, tools::ConvertCommand& o) {
         if (o.writesGrid()) tools::noteOutput(o, output, o.output.empty() || outputs.size() > 1 ? "" : "-o", files);
         if (o.usda) files.writes(tools::usdaOf(output).string(), "--usda");
     }
-    files.writes(o.dump_toolpath, "--dump-toolpath");
-    files.writes(o.common.stats, "--stats");
+    files.writesBeside(o.dump_toolpath, "--dump-toolpath");
+    files.writesBeside(o.common.stats, "--stats");
     tools::checkReport(o.report, o.inputs.size(), o.output, files);
     if (folder) tools::makeFolder(o.output);
     o.common.output_on_stdout =

@@ -40,7 +40,7 @@ void run(MergeCommand& o) {
     tools::RunFiles files;
     for (const std::string& part : o.parts) files.reads(part);
     files.writes(o.output, "OUT");
-    files.writes(o.common.stats, "--stats");
+    files.writesBeside(o.common.stats, "--stats");
     Stopwatch watch;
     const shade::MergedPicture merged =
         shade::mergeParts(o.output, std::vector<fs::path>(o.parts.begin(), o.parts.end()));

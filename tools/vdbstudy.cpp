@@ -155,7 +155,7 @@ void run(const Verb& verb, Options& o, int argc, char** argv) {
          {".csv", "_scenes.csv", "_prints.csv", "_volume.csv", "_roughness.csv", "_corner.csv", "_time.csv"})
         files.writes(name + ending, "-o");
     files.writes(name + ".html", "-o");
-    files.writes(o.common.stats, "--stats");
+    files.writesBeside(o.common.stats, "--stats");
     tools::makeFolder(o.study.folder);
     tools::ProgressBar bar(verb.app->get_name(), o.common.quiet);
     o.study.progress = bar.callback();

@@ -141,7 +141,7 @@ void runFilm(tools::TraceCommand& o, const std::vector<std::string>& given_of_pr
     const tools::ThreadLimit limit(o.common.threads);
     tools::RunFiles files;
     listFiles(files, o, "--film");
-    files.writes(o.common.stats, "--stats");
+    files.writesBeside(o.common.stats, "--stats");
     checkPrints(o, given_of_prints);
     checkNozzle(o);
     o.denoise = assemble::chooseDenoising(o.denoising(o.linear), o.render);
@@ -174,7 +174,7 @@ void run(const CLI::App& app, tools::TraceCommand& whole, char** argv) {
     for (const tools::TraceCommand& o : commands)
         for (const std::string& input : o.inputs) files.reads(input);
     for (const tools::TraceCommand& o : commands) listFiles(files, o, named ? "-o" : "");
-    files.writes(whole.common.stats, "--stats");
+    files.writesBeside(whole.common.stats, "--stats");
     for (tools::TraceCommand& o : commands) {
         o.common.output_on_stdout = isStandardOutput(o.output);
         if (folder) tools::makeFolder(fs::path(o.output).parent_path());

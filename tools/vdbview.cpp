@@ -223,7 +223,7 @@ void run(const CLI::App& app, const ViewCommand& o) {
         for (const std::string& file : assemble::inputFiles(input.objects, input.options.scene, o.prints.print.printer))
             files.reads(file);
     }
-    files.writes(o.common.stats, "--stats");
+    files.writesBeside(o.common.stats, "--stats");
     auto viewer = std::make_unique<view::Viewer>(std::move(inputs), [&o](const std::string& text) {
         if (o.common.quiet) return;
         tools::tellError(fmt::format("vdbview: {}\n", text));

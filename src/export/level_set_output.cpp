@@ -7,6 +7,7 @@
 #include <openvdb/io/io.h>
 
 #include <memory>
+#include <string>
 #include <utility>
 
 namespace stratum::exporter {

@@ -202,6 +202,7 @@ Toolpath readToolpath(std::string_view bytes, std::string_view name, const ReadO
     if (recorded.empty()) refuseWithoutBeads(machine.counts(), text, name);
     const bool filament_known = takeFilament(settings.footer, machine, recorded, warnings);
     resolveHeights(recorded, recorder.runZ(), nominal, warnings);
+    recorder.countPlainMarks();
     if (!filament_known) chooseFilament(settings.nozzle_diameter, recorded, warnings);
     resolveSections(recorded, recorder.runZ(), nominal, warnings);
     warnOfMixedFilaments(machine, recorded, warnings);

@@ -22,10 +22,9 @@ constexpr std::array kNumbers{
         "What the beads take of the filament as the file counts it; of a selection, in proportion to its volume."},
     Definition{"deposited_volume", kVolume, "Deposited volume", "mm^3",
                "What was fed: the sum of all beads, section area times length. Overlaps count twice."},
-    Definition{
-        "plastic_volume", kVolume, "Plastic volume", "mm^3",
-        "The union of the beads, from their heights over 400 points a mm^2 of the plan: the same for every voxel "
-        "size."},
+    Definition{"plastic_volume", kVolume, "Plastic volume", "mm^3",
+               "The union of the beads, from their heights over 400 points a mm^2 of the plan (fewer where layers are "
+               "higher than 0.4 mm): the same for every voxel size."},
     Definition{
         "enclosed_volume", kVolume, "Enclosed volume", "mm^3",
         "Plastic and pores: the outer hull, filled. The outside is what a ball reaches from around the part whose "

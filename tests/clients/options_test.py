@@ -70,6 +70,15 @@ does(GCODE2VDB, "t.gcode", "--summary", "-o", "summary.vdb", *COARSE)
 check("summary.vdb" in contents(), "with -o it is written")
 shutil.copy(gcode("tile.gcode"), path("u.gcode"))
 
+# --- a report that can't be written is found before the work ------------------------------------------------------------
+for tool, source, words in ((GCODE2VDB, "t.gcode", ["--stats", "none/s.json"]), (GCODE2VDB, "t.gcode", ["--dump-toolpath", "none/t.csv"]),
+                            (GCODE2VDB, "t.gcode", ["--report", "none/r.md"]), (VDBTRACE, "t.vdb", ["--stats", "none/s.json"])):
+    refused([tool, source, "-o", "late.png" if tool == VDBTRACE else "late.vdb", *words], 1, words[1], "does not exist")
+check(not any(name.startswith("late") for name in contents()), "nothing was made")
+told = does(GCODE2VDB, "t.gcode", *COARSE, "--layers", "10:", "--snapshots", "layer:2,layer:12", "-o", "steps.vdb")
+check("nothing is printed by then" in told.stdout + told.stderr and len([name for name in contents() if name.startswith("steps")]) == 2,
+      "a snapshot of nothing is said")
+
 # --- each takes its own words, so that the input may come last ---------------------------------------------------------
 for words in (["--light", "ambient:1,1,1"], ["--eye", "60,-60,30"], ["--focus", "100", "--f-number", "4"],
               ["--eye", "-60,-60,30", "--look-at", "10,10,1"], ["--integrator", "phong", "--phong", "1,1,1,500,0"],

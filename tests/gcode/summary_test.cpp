@@ -65,6 +65,15 @@ TEST(Summary, WhatIsFlushedIsInTheSum) {
         << text;
 }
 
+// Bambu's H2D does it by itself. The sum of BambuStudio has what stands between the marks, and the clock all of it.
+TEST(Summary, WhatAPrinterFlushesByItselfIsInTheSum) {
+    const std::string text = summarize(
+        readProgram("; total filament length [mm] : 213.123\nM83\nG1 Z.2\nG1 X9 E4\nT1\n;VG1 E4 F498\n; VFLUSH_START\n"
+                    ";VG1 E41.5 F374\n;VG1 E167.623 F498\n; VFLUSH_END\n"));
+    EXPECT_NE(text.find("213.12 mm of filament; the file says 213.12 (+0.00 %)"), std::string::npos) << text;
+    EXPECT_NE(text.find("flushed while filaments change: 209.12 mm"), std::string::npos) << text;
+}
+
 TEST(Summary, Colors) {
     const auto has = [](const std::string& program, const std::string& part) {
         const std::string text = summarize(readProgram(program));

@@ -45,6 +45,11 @@ void RunFiles::writes(const std::string& path, std::string_view option) {
     if (!path.empty()) Replacement::check(path);
 }
 
+void RunFiles::writesBeside(const std::string& path, std::string_view option) {
+    writes(path, option);
+    if (!path.empty() && !isStandardOutput(path)) AtomicFile::probe(path);
+}
+
 void RunFiles::use(const std::string& path, std::string_view option) {
     if (path.empty()) return;
     const bool standard = isStandardOutput(path);

@@ -19,6 +19,9 @@ public:
     /// Throws UsageError if the file is read or written by this run already, or may not be replaced (Replacement). ""
     /// is no file.
     void writes(const std::string& path, std::string_view option);
+    /// The same of a file whose whole name was given, beside what the run makes. Throws OutputError if it can't be
+    /// written: before the work, not after it.
+    void writesBeside(const std::string& path, std::string_view option);
 
 private:
     void use(const std::string& path, std::string_view option);

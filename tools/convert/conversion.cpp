@@ -175,7 +175,10 @@ std::vector<ConversionJob> Conversion::planJobs() const {
                 fmt::format("{}_{}{}", output_.stem().string(), snapshot.label, output_.extension().string()));
             const auto end = static_cast<std::uint32_t>(snapshot.bead_count);
             const auto beads = std::lower_bound(selection.begin(), selection.end(), end) - selection.begin();
-            if (beads > 0) jobs.push_back({snapshot.label, path, static_cast<std::size_t>(beads), end});
+            if (beads > 0)
+                jobs.push_back({snapshot.label, path, static_cast<std::size_t>(beads), end});
+            else
+                say(o_.common, fmt::format("  no {}: nothing is printed by then", path.string()));
         }
     }
     jobs.push_back({"", output_, selection.size(), static_cast<std::uint32_t>(toolpath_.beads.size())});

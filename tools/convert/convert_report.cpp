@@ -1,6 +1,5 @@
 #include "convert/convert_report.h"
 
-#include "base/atomic_file.h"
 #include "base/error.h"
 #include "report/text/report_file.h"
 
@@ -45,8 +44,7 @@ void checkReport(const ConvertReport& report, std::size_t inputs, const std::str
     for (const std::string& path : report.paths) {
         if (!report::isReportPath(path))
             throw UsageError(fmt::format("--report {}: the name must end in .json, .md or .html", path));
-        files.writes(path, "--report");
-        AtomicFile::probe(path);
+        files.writesBeside(path, "--report");
     }
 }
 

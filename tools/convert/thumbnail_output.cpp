@@ -179,7 +179,7 @@ void writeThumbnails(ConvertCommand& o) {
     for (const std::string& input : o.inputs) files.reads(input);
     if (!o.thumbnail.in_place)
         for (const fs::path& output : outputs) files.writes(output.string(), "-o");
-    files.writes(o.common.stats, "--stats");
+    files.writesBeside(o.common.stats, "--stats");
     o.common.output_on_stdout = isStandardOutput(outputs.front());
 
     const ThreadLimit limit(o.common.threads);

@@ -7,6 +7,8 @@
 #include "gcode/toolpath/toolpath.h"
 #include "gcode/toolpath/warning_log.h"
 
+#include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -35,6 +37,8 @@ public:
     void setSpeed(double speed) { next_.speed = static_cast<float>(speed); }
     void startObject(std::string_view name, std::uint32_t line);
     void stopObject() { next_.object = 0; }
+    /// isPlainLayerMark(): counts where z does not tell layers.
+    void plainMark() { plain_marks_.push_back(toolpath_.beads.size()); }
     /// Renames the current object; if another object has that name, it becomes the current one.
     void renameObject(std::string_view name, std::uint32_t line);
     /// M600: a manual change of filament. Warns if no tag has announced it: the new color is then left open.
@@ -61,6 +65,9 @@ public:
     /// By run: the z of its level beads, or NaN if they are sloped.
     const std::vector<double>& runZ() const { return run_z_; }
 
+    /// Layers by plain marks, where z does not tell them; when heights are known, which count the layers of spirals.
+    void countPlainMarks();
+
 private:
     /// The number of an object that its name has marked already: OrcaSlicer writes both.
     bool isSecondMark(std::string_view name) const;
@@ -79,6 +86,7 @@ private:
     std::vector<MixChange> mixes_;
     Run next_;
     double nominal_height_;
+    std::vector<std::size_t> plain_marks_;  // beads before each
     bool layer_marks_ = false;
     bool part_started_ = false;
     bool features_ = false;         // some tag has named one

@@ -95,7 +95,10 @@ void Machine::heed(const Tag& tag, const Line& line) {
     const bool behind_move = tag.bare && line.count > 0;
     if (behind_move && types_stated_) return;
     if (tag.kind == Tag::Kind::feature && !tag.bare && tag.feature != Feature::custom) types_stated_ = true;
-    if (tag.kind == Tag::Kind::object_start) objects_by_comment_ = true;
+    if (tag.kind == Tag::Kind::object_start) {
+        if (!objects_by_comment_) recorder_.stopObject();  // a macro's, whose end does not count from here on
+        objects_by_comment_ = true;
+    }
     if (tag.kind == Tag::Kind::filament_loaded) loaded();
     flushing_ = flushing_ ? tag.kind != Tag::Kind::flush_stop : tag.kind == Tag::Kind::flush_start;
     if (tag.kind == Tag::Kind::units_set && line.count > 0 && line.commands[0].code == 21) recorder_.startPart();
@@ -106,8 +109,12 @@ void Machine::run(const Line& line) {
     line_ = line.number;
     // The comment first: Slic3r writes the feature of a move behind the move.
     if (!line.comment.empty()) {
-        if (const Tag tag = parseTag(line.comment); tag.kind != Tag::Kind::none) heed(tag, line);
-        if (moves_ != nullptr) tellTime(line.comment);
+        if (const Tag tag = parseTag(line.comment); tag.kind != Tag::Kind::none)
+            heed(tag, line);
+        else if (isPlainLayerMark(line.comment))
+            recorder_.plainMark();
+        if (moves_ != nullptr) tellElapsed(line.comment);
+        flushByItself(line.comment);
     }
     std::optional<std::size_t> workspace;
     for (std::size_t i = 0; i < line.count; ++i) {
@@ -123,23 +130,27 @@ void Machine::run(const Line& line) {
     if (line.unreadable && line.count == 0) warnUnreadable(line);
 }
 
-void Machine::tellTime(std::string_view comment) {
+void Machine::tellElapsed(std::string_view comment) {
     constexpr std::string_view kElapsed = "TIME_ELAPSED:";
-    if (comment.starts_with(kElapsed)) {
-        if (const auto seconds = parseDuration(comment.substr(kElapsed.size()))) moves_->elapsed(*seconds);
-        return;
-    }
-    // Bambu's printers with two nozzles flush by themselves; what that takes, the slicer writes as moves of E that the
-    // printer skips: ";VG1 E4 F299".
+    if (!comment.starts_with(kElapsed)) return;
+    if (const auto seconds = parseDuration(comment.substr(kElapsed.size()))) moves_->elapsed(*seconds);
+}
+
+// Bambu's printers with two nozzles flush by themselves; how much and how long, the slicer writes as moves of E that
+// the printer skips: ";VG1 E4 F299".
+void Machine::flushByItself(std::string_view comment) {
     constexpr std::string_view kFlush = "VG1 E";
     if (!comment.starts_with(kFlush)) return;
-    const auto f = comment.find('F');
-    double length = 0;
-    double speed = 0;
     const char* at = comment.data() + kFlush.size();
-    if (f == std::string_view::npos || !parseNumber(at, comment.data() + comment.size(), length)) return;
+    const char* const end = comment.data() + comment.size();
+    double length = 0;
+    if (!parseNumber(at, end, length) || !(length > 0 && length <= kMaxExtrusion)) return;
+    if (flushing_) flushed_ += length;
+    const auto f = comment.find('F');
+    if (moves_ == nullptr || f == std::string_view::npos) return;
     at = comment.data() + f + 1;
-    if (parseNumber(at, comment.data() + comment.size(), speed)) moves_->flush(length, speed / 60, line_);
+    double speed = 0;
+    if (parseNumber(at, end, speed) && speed > 0) moves_->wait(60 * length / speed);
 }
 
 void Machine::warnUnreadable(const Line& line) {

@@ -100,7 +100,8 @@ private:
     void setPosition(const Command& command);
     void setAbsolute(const Command& command);
     void remarkForeign(const Command& command);
-    void tellTime(std::string_view comment);
+    void tellElapsed(std::string_view comment);
+    void flushByItself(std::string_view comment);
     void warnUnreadable(const Line& line);
     void setHeatOrFan(const Command& command);
     void setHomeOffset(const Command& command);

@@ -154,10 +154,6 @@ void MotionRecorder::runRetraction(const Retraction& retraction, double sign, st
     sink_.move(move);
 }
 
-void MotionRecorder::flush(double length, double speed, std::uint32_t line) {
-    runRetraction({.length = std::min(length, kLongestRetraction), .speed = std::max(speed, 0.0)}, 1, line);
-}
-
 void MotionRecorder::dwell(const Command& command, std::uint32_t line) {
     double seconds = 0;
     if (command.hasValue('P')) seconds = command.value('P') / 1000;
@@ -280,7 +276,7 @@ void MotionRecorder::changeFilament(std::size_t to, std::uint32_t line) {
     const auto [held, empty] = filaments_.try_emplace(extruder, to);
     if (before == extruder && !empty && held->second == to) return;
     sink_.stop(Stop::tool_change, line);
-    double seconds = before && before != extruder ? settings_.change : 0.0;
+    double seconds = before && before != extruder ? std::max(settings_.change, settings_.extruder_change) : 0.0;
     if (empty || held->second != to) seconds += timeOf(settings_.load, to);
     if (!empty && held->second != to) seconds += timeOf(settings_.unload, held->second);
     extruder_ = extruder;

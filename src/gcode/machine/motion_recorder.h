@@ -11,6 +11,7 @@
 #include "gcode/toolpath/frame.h"
 #include "gcode/toolpath/warning_log.h"
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <map>
@@ -48,9 +49,7 @@ public:
     void retraction(const RetractionChange& change);
     void changeTool(std::size_t from, std::size_t to, std::uint32_t line);
     void pause(std::uint32_t line) { sink_.stop(Stop::pause, line); }
-    /// Filament that the printer pushes out by itself: mm, mm/s.
-    void flush(double length, double speed, std::uint32_t line);
-    /// Bambu's SYNC: what such work takes besides.
+    /// The printer does something by itself, which the program says how long.
     void wait(double seconds) { sink_.wait(std::clamp(seconds, 0.0, kLongestWait)); }
     void elapsed(double seconds) { sink_.elapsed(seconds); }
     /// `seconds`: as `what` has it in the file, M900 K or the like.

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <iterator>
 #include <optional>
 #include <string>
 
@@ -174,8 +175,10 @@ private:
             if (const auto time = number(value, 0, kLongestWait)) settings_.load = {*time};
         } else if (key == "machine_unload_filament_time") {
             if (const auto time = number(value, 0, kLongestWait)) settings_.unload = {*time};
-        } else if (key == "machine_tool_change_time" || key == "machine_switch_extruder_time") {
+        } else if (key == "machine_tool_change_time") {
             if (const auto time = number(value, 0, kLongestWait)) settings_.change = *time;
+        } else if (key == "machine_switch_extruder_time") {  // Bambu Studio's name of it, of printers with several
+            if (const auto time = number(value, 0, kLongestWait)) settings_.extruder_change = *time;
         } else if (key == "filament_map") {
             mapFilaments(value);
         }

@@ -6,6 +6,7 @@
 
 #include "gcode/printer/read_options.h"
 
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -26,7 +27,8 @@ struct MachineSettings {
     bool rule_chosen = false;            ///< limits.rule is fixed: commands don't change it
     std::vector<double> load;            ///< s by tool; may be short
     std::vector<double> unload;          ///< s by tool; may be short
-    double change = 0;                   ///< s, of every change of tool; with extruders: of every change of these
+    double change = 0;                   ///< s, of every change of tool
+    double extruder_change = 0;          ///< s, of every change of extruder, where there are several
     std::vector<std::size_t> extruders;  ///< by filament, of a printer with several (Bambu's, filament_map); else empty
     bool parked = false;                 ///< filaments are, so that the first change unloads nothing (PrusaSlicer)
 };

@@ -72,11 +72,16 @@ public:
         return open();
     }
     void travel(const Command& command) { go(command); }
-    bool open() const { return first_ > kFirst && moves_ < kMoves; }
+    bool open() const { return !whole_ && first_ > kFirst && moves_ < kMoves; }
+
+    // E was set: behind the first move with it, that was a purge.
+    void set() {
+        if (moves_ > 0) whole_ = true;
+    }
 
     bool cut() const {
         constexpr double kMore = 10;
-        return first_ > kFirst && moves_ >= kFewest && filament_ > 0 &&
+        return !whole_ && first_ > kFirst && moves_ >= kFewest && filament_ > 0 &&
                first_ * length_ > kMore * filament_ * first_length_;
     }
 
@@ -98,6 +103,7 @@ private:
     double first_ = 0, first_length_ = 0;
     double filament_ = 0, length_ = 0;  // of the moves behind the first
     int moves_ = 0;
+    bool whole_ = false;
 };
 
 class Scanner {
@@ -107,7 +113,10 @@ public:
         if (command.kind == Command::Kind::numbered) {
             if (command.letter == 'M') return miscellaneous(command.code);
             motion_ = command.letter == 'G' && command.code <= 3;
-            if (command.letter == 'G' && command.code == 92 && command.has('E')) changes_.restart();
+            if (command.letter == 'G' && command.code == 92 && command.has('E')) {
+                changes_.restart();
+                beginning_.set();
+            }
             if (!motion_) return true;
         } else if (command.kind == Command::Kind::extended || !motion_) {
             return true;

@@ -31,8 +31,8 @@ struct ExtrusionScan {
     bool cut = false;
 };
 
-/// Reads from the start as far as needed: to the first E if M82 or M83 came before, else over a few hundred moves, or
-/// to the end if there is no E.
+/// Reads from the start as far as needed: to the first E if M82 or M83 came before (a few moves farther if that is
+/// large), else over a few hundred moves, or to the end if there is no E.
 ExtrusionScan scanExtrusion(std::string_view bytes);
 
 /// ExtrusionScan::relative_after_g90, from a few hundred moves behind such G90. A byte search where there are none.

@@ -30,23 +30,25 @@ private:
     std::unordered_map<std::string_view, Feature> features_;
 };
 
-// NamedFeature behind ";TYPE:" and similar tags. One list for all slicers, since a name means the same in all
-// of them: PrusaSlicer, SuperSlicer, CreatWare, Canvas, fiberslice, Cura, ideaMaker, OrcaSlicer, BambuStudio.
+// Names behind ";TYPE:" and similar tags. One list for all slicers, since a name means the same in all
+// of them: PrusaSlicer, SuperSlicer, CreatWare, Canvas, fiberslice, Cura, ideaMaker, OrcaSlicer, BambuStudio,
+// MatterSlice.
 const FeatureNames kFeatureTypes{
     {Feature::perimeter, "perimeter|internal perimeter|inner perimeter|wall inner|wall-inner|inner wall"},
     {Feature::external_perimeter, "external perimeter|thin wall|wall outer|wall-outer|outer wall"},
     {Feature::overhang_perimeter, "overhang perimeter|bridge-wall|overhang|overhang wall"},
     {Feature::infill, "internal infill|infill|fill|sparse infill"},
     {Feature::solid_infill,
-     "solid infill|skin|solid-fill|internal solid infill|bottom surface|floating vertical shell|ensure vertical shell"},
-    {Feature::top_infill, "top solid infill|top-surface|top surface"},
+     "solid infill|skin|solid-fill|internal solid infill|bottom surface|floating vertical shell|ensure vertical "
+     "shell|bottom-fill"},
+    {Feature::top_infill, "top solid infill|top-surface|top surface|top-fill"},
     {Feature::bridge, "bridge infill|internal bridge infill|bridging|bridge|internal bridge"},
     {Feature::gap_fill, "gap fill|gap-fill|gap infill"},
     {Feature::ironing, "ironing|support ironing"},
     {Feature::skirt, "skirt|skirt/brim|brim/skirt"},
     {Feature::brim, "brim"},
     {Feature::support, "support material|support|support-infill|raft|support transition"},
-    {Feature::support_interface, "support material interface|support-interface|support interface"},
+    {Feature::support_interface, "support material interface|support-interface|support interface|air-gap"},
     {Feature::wipe_tower, "wipe tower|prime-tower|ooze-shield|wipe-tower|prime tower"},
     {Feature::custom, "custom"},
     {Feature::unknown, "mixed|unknown|travel|milling|multiple|undefined"},

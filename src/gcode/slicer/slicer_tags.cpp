@@ -176,6 +176,10 @@ Tag parseTag(std::string_view comment) {
         case 'f':  // Simplify3D from 4.1 on
             if (take(text, "feature ")) return ofBareName(text);
             break;
+        case 'V':  // what Bambu's printers with two nozzles flush by themselves
+            if (text == "VFLUSH_START") return {.kind = Tag::Kind::flush_start};
+            if (text == "VFLUSH_END") return {.kind = Tag::Kind::flush_stop};
+            break;
         case 'H':
             if (take(text, "HEIGHT:")) return ofHeight(text);
             if (take(text, "HEIGHT-BELT:")) return ofHeight(text);  // ideaMaker: across the layers; HEIGHT is Z's
@@ -224,6 +228,12 @@ Tag parseTag(std::string_view comment) {
     Tag tag = ofBareName(text);
     tag.bare = tag.kind == Tag::Kind::feature;
     return tag;
+}
+
+bool isPlainLayerMark(std::string_view comment) {
+    std::string_view text = trim(comment);
+    if (!take(text, "layer")) return false;
+    return trim(text).find_first_not_of("0123456789") == std::string_view::npos;
 }
 
 }  // namespace stratum::gcode

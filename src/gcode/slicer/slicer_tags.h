@@ -44,4 +44,7 @@ inline constexpr std::string_view kObjectNumber = "unique label id: ";
 /// The tag in a comment (given without its ';'), or Kind::none. ";WIDTH:" is none of them: the width follows from E.
 Tag parseTag(std::string_view comment);
 
+/// "layer 3" or "layer", as people's own programs have it; parseTag() has none of it.
+bool isPlainLayerMark(std::string_view comment);
+
 }  // namespace stratum::gcode

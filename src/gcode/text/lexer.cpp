@@ -58,6 +58,8 @@ public:
         if (p_ == end_ || *p_ == '%') return;  // '%' alone marks the ends of a CNC program
         skipLineNumber();
         p_ = skipBlanks(p_, end_);
+        if (p_ != end_ && *p_ == '=')
+            return;  // "===== record data =====": a comment whose ';' is missing (Bambu's H2C)
         if (p_ != end_ && *p_ == '/') {
             line_.deleted = p_ + 1 == end_ || p_[1] != '/';  // two of them are a comment
             return;

@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <new>
 #include <numbers>
 #include <set>
 #include <system_error>
@@ -84,8 +85,10 @@ auto withGrid(const std::filesystem::path& path, const std::string& name, const 
         return read(heads, chooseGrid(heads, where, name), input);
     } catch (const InputError&) {
         throw;
+    } catch (const std::bad_alloc&) {
+        // Also of impossible counts in a damaged file.
+        throw InputError(fmt::format("{}: is not a readable .vdb file, or there is not enough memory for it", where));
     } catch (const std::exception& error) {
-        // OpenVDB throws its own exceptions, and std::bad_alloc for impossible counts in a damaged file.
         throw InputError(fmt::format("{}: is not a readable .vdb file ({}); is it cut short?", where, error.what()));
     }
 }

@@ -68,8 +68,8 @@ public:
         if (content_ == FilmContent::position) box_ = positionRange(film);
     }
 
-    /// Whether values are light, which is encoded, and not numbers to be shown as they are.
-    bool isLight() const { return content_ == FilmContent::radiance || content_ == FilmContent::unit; }
+    /// Whether eight bits are too few for smooth gradients.
+    bool dithers() const { return content_ == FilmContent::radiance || content_ == FilmContent::unit; }
 
     /// What the display shines with, of a pixel of light.
     Color light(const Color& rgb) const {
@@ -180,7 +180,7 @@ std::vector<std::uint8_t> toDisplay(const Film& film, const ToneOptions& options
             for (int x = region.x0; x < region.x1; ++x) {
                 const Color c = display.color(film.at(x, y));
                 for (std::uint32_t channel = 0; channel < 3; ++channel)
-                    *out++ = toByte(c[static_cast<int>(channel)], display.isLight() ? dither(x, y, channel) : 0.0f);
+                    *out++ = toByte(c[static_cast<int>(channel)], display.dithers() ? dither(x, y, channel) : 0.0f);
             }
         }
     });
@@ -195,11 +195,12 @@ std::vector<std::uint8_t> toDisplayWithAlpha(const Film& film, const ToneOptions
     }
     const std::vector<std::uint8_t> rgb = toDisplay(straight, options);
     const Display display(straight, options);
+    const bool radiance = film.content() == FilmContent::radiance;  // the alpha of others is the share of a pixel
     std::vector<std::uint8_t> rgba;
     rgba.reserve(4 * film.pixels().size());
     for (std::size_t n = 0; n < film.pixels().size(); ++n) {
         const float alpha = film.pixels()[n].alpha;
-        if (display.isLight() && alpha > 0.0f && alpha < 1.0f) {
+        if (radiance && alpha > 0.0f && alpha < 1.0f) {
             const std::array<std::uint8_t, 4> pixel = straightPixel(display.light(straight.pixels()[n].rgb), alpha);
             rgba.insert(rgba.end(), pixel.begin(), pixel.end());
             continue;

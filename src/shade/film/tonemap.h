@@ -31,9 +31,9 @@ float encodeSrgb(float linear);
 std::vector<std::uint8_t> toDisplay(const Film& film, const ToneOptions& options = {});
 
 /// 8-bit RGBA of the same, for transparent films: the colors are those of what is there, not multiplied by alpha
-/// ("straight", as PNG, WebP and QOI have them); 0 where alpha rounds to 0. Where light is partly let through, colors
-/// and alpha are those with which programs that mix encoded values (browsers, most editors) show what light would give:
-/// a shadow of alpha a has 1 - encodeSrgb(1 - a).
+/// ("straight", as PNG, WebP and QOI have them); 0 where alpha rounds to 0. Where radiance is partly let through,
+/// colors and alpha are those with which programs that mix encoded values (browsers, most editors) show what light
+/// would give: a shadow of alpha a has 1 - encodeSrgb(1 - a).
 std::vector<std::uint8_t> toDisplayWithAlpha(const Film& film, const ToneOptions& options = {});
 
 /// 8-bit RGB of 8-bit RGBA over black: for kinds of pictures that have no alpha.

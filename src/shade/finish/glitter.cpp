@@ -99,9 +99,9 @@ Glitter::Glitter(const Color& body, double size)
     : size_(size), plastic_(std::make_shared<Plastic>(body, kFilamentAlpha)) {
     constexpr float kSilver = 0.9f;
     constexpr float kTint = 0.4f;
-    // Steeper ones would mirror light from above into the plastic, and be dark: as a share of the distribution.
-    constexpr float kSteepest = 0.7f;  // tan 35 degrees
-    constexpr float kKept = kSteepest * kSteepest / (kSteepest * kSteepest + kSpread * kSpread);
+    constexpr float kSteepest = 0.7f;  // tan 35 degrees: steeper ones would mirror light into the plastic, and be dark
+    constexpr float kKept =            // of the distribution
+        kSteepest * kSteepest / (kSteepest * kSteepest + kSpread * kSpread);
     const Color color = kSilver * ((1.0f - kTint) * Color(1.0f) + kTint * body);
     kinds_.reserve(kKinds);
     for (std::size_t n = 0; n < kKinds; ++n) {

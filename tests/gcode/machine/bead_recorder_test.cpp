@@ -10,6 +10,21 @@
 namespace stratum::gcode {
 namespace {
 
+// Marks by people's own programs: where layers are not level they count, else z does.
+TEST(BeadRecorder, PlainMarksCountWhereLayersAreNotLevel) {
+    std::string tilted = "M83\n";
+    std::string level = "M83\n;layer 0\nG1 X0 Y5 Z.2\nG1 X9 E1\n";
+    for (int n = 0; n < 4; ++n) {
+        tilted += "; layer " + std::to_string(n) + "\n; layer filling\n";
+        for (int k = 0; k < 9; ++k)
+            tilted += "G1 X" + std::to_string(10 * (k % 2)) + " Y" + std::to_string(k) + " Z" +
+                      std::to_string(1 + n * 0.3 + k * 0.5 + 0.1 * (k % 2)) + " E1\n";
+        level += ";layer\n";
+    }
+    EXPECT_EQ(readProgram(tilted).layer_count, 4U);
+    EXPECT_EQ(readProgram(level + "G1 Z.4\nG1 X0 E1\n").layer_count, 2U);
+}
+
 // OrcaSlicer's marks for its own printers and for Bambu's, one behind the other.
 TEST(BeadRecorder, AnObjectThatIsMarkedTwiceIsOne) {
     const Toolpath toolpath = readProgram(
@@ -22,6 +37,15 @@ TEST(BeadRecorder, AnObjectThatIsMarkedTwiceIsOne) {
     EXPECT_EQ(toolpath.runOf(toolpath.beads[0]).object, 1);
     EXPECT_EQ(toolpath.runOf(toolpath.beads[1]).object, 2);
     EXPECT_EQ(toolpath.runOf(toolpath.beads[2]).object, 1);
+}
+
+// Where comments mark objects, macros don't: one that a macro has begun ends there.
+TEST(BeadRecorder, AnObjectOfAMacroEndsWhereCommentsBegin) {
+    const Toolpath toolpath = readProgram(
+        "M83\nG1 Z.2\nEXCLUDE_OBJECT_START NAME=part\n; start printing object, unique label id: 15\nG1 X10 E1\n"
+        "; stop printing object, unique label id: 15\nEXCLUDE_OBJECT_END NAME=part\nG1 X20 E1\n");
+    EXPECT_EQ(toolpath.objects[toolpath.runOf(toolpath.beads[0]).object], "unique label id: 15");
+    EXPECT_EQ(toolpath.runOf(toolpath.beads[1]).object, 0);
 }
 
 std::vector<std::uint32_t> layersOf(const Toolpath& toolpath) {

@@ -97,6 +97,10 @@ TEST(ExtrusionScan, APartOfAProgramThatCountsEFromBefore) {
     // Large beads: each line holds as much.
     EXPECT_FALSE(scanExtrusion("M82\nG1 X1000 E3000\nG1 Y1000 E6000\nG1 X0 E9000\nG1 Y0 E12000\n").cut);
 
+    // A purge on the spot.
+    EXPECT_FALSE(
+        scanExtrusion("M82\nG92 E0\nG1 X10 Y10 E300\nG92 E0\nG1 X20 E.3\nG1 Y20 E.6\nG1 X10 E.9\nG1 Y10 E1\n").cut);
+
     const Toolpath part = readProgram("M82\nG92 E0\nG1 X10 Y10 Z0.2 E723.6\n" + lines);
     EXPECT_EQ(warningCount(part, "the first E is 723.6"), 1U);
     ASSERT_EQ(part.beads.size(), 4U);

@@ -128,6 +128,13 @@ TEST(ToDisplayWithAlpha, LaidOverAPageByEncodedValuesIsWhatLightGives) {
     }
 }
 
+// A mask's alpha is the share of a pixel.
+TEST(ToDisplayWithAlpha, KeepsTheCoverageOfAMask) {
+    Film film(1, 1, {0, 0, 1, 1}, FilmContent::unit);
+    film.pixels()[0] = {Color(0.5f), 0.5f};
+    EXPECT_EQ(shade::toDisplayWithAlpha(film), (std::vector<std::uint8_t>{255, 255, 255, 128}));
+}
+
 TEST(ToneOptions, RefusesNonsense) {
     EXPECT_THROW((shade::ToneOptions{.exposure = 1e3}.validate()), UsageError);
     EXPECT_THROW((shade::ToneOptions{.exposure = std::numeric_limits<double>::quiet_NaN()}.validate()), UsageError);
