@@ -139,6 +139,11 @@ Tag ofBareName(std::string_view text) {
 
 Tag ofObject(std::string_view name) { return {.kind = Tag::Kind::object_start, .text = name}; }
 
+Tag ofFlush(std::string_view text) {
+    if (text == "FLUSH_START") return {.kind = Tag::Kind::flush_start};
+    return {.kind = text == "FLUSH_END" ? Tag::Kind::flush_stop : Tag::Kind::none};
+}
+
 Tag ofObjectEnd(std::string_view text) {
     take(text, ", ");
     return {.kind = Tag::Kind::object_stop, .text = text};
@@ -170,16 +175,12 @@ Tag parseTag(std::string_view comment) {
             break;
         case 'F':
             if (take(text, "FEATURE:")) return ofType(text);
-            if (text == "FLUSH_START") return {.kind = Tag::Kind::flush_start};
-            if (text == "FLUSH_END") return {.kind = Tag::Kind::flush_stop};
-            break;
+            return ofFlush(text);
         case 'f':  // Simplify3D from 4.1 on
             if (take(text, "feature ")) return ofBareName(text);
             break;
         case 'V':  // what Bambu's printers with two nozzles flush by themselves
-            if (text == "VFLUSH_START") return {.kind = Tag::Kind::flush_start};
-            if (text == "VFLUSH_END") return {.kind = Tag::Kind::flush_stop};
-            break;
+            return ofFlush(text.substr(1));
         case 'H':
             if (take(text, "HEIGHT:")) return ofHeight(text);
             if (take(text, "HEIGHT-BELT:")) return ofHeight(text);  // ideaMaker: across the layers; HEIGHT is Z's
