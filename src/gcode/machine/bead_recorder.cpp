@@ -164,11 +164,12 @@ void BeadRecorder::countPlainMarks() {
     // Layers that are not level: z counts many more.
     constexpr std::size_t kFewest = 3;
     constexpr std::size_t kMore = 2;
+    if (layer_marks_ || plain_marks_.size() < kFewest) return;
     std::erase_if(plain_marks_, [this](std::size_t mark) { return mark >= toolpath_.beads.size(); });
     plain_marks_.erase(std::unique(plain_marks_.begin(), plain_marks_.end()), plain_marks_.end());
     std::uint32_t layers = 0;
     for (const Run& run : toolpath_.runs) layers = std::max(layers, run.layer);
-    if (layer_marks_ || plain_marks_.size() < kFewest || layers <= kMore * plain_marks_.size()) return;
+    if (plain_marks_.size() < kFewest || layers <= kMore * plain_marks_.size()) return;
     std::uint32_t run = 0;
     for (std::size_t bead = 0, layer = 0; bead < toolpath_.beads.size(); ++bead) {
         while (layer < plain_marks_.size() && plain_marks_[layer] <= bead) ++layer;
