@@ -39,7 +39,7 @@ Reach reachOf(const PrintLayout& layout, std::uint32_t rank) {
         const double off = std::max(std::abs(std::remainder(center - lattice.origin_z, h)) - field.halfSide(), 0.0);
         const double far = field.radius() + lattice.background();
         around = std::sqrt(far * far - off * off) - field.radius();
-        if (toolpath.deposit.swells()) around += voxelize::kMostSwell;
+        if (toolpath.deposit.swells()) around += voxelize::kMostSwell * layout.stack.settling_scale;
         raised = layout.stack.layers[layout.stack.layer[rank]].most_rise;
     }
     constexpr double kSlack = 1e-4;  // voxels; the leaves give the exact box

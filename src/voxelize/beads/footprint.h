@@ -87,7 +87,7 @@ public:
           half_(half_span),
           per_edge_(1 / edge),
           fills_grooves_(reach == Reach::field && toolpath.deposit.settles()),
-          swell_(toolpath.deposit.swells() ? kMostSwell : 0),
+          swell_(toolpath.deposit.swells() ? kMostSwell * settlingScale(toolpath) : 0),
           band_(band),
           // The part in 1e9 makes rounding conservative.
           slack_((band + half_span * std::sqrt(2.0)) * (1 + 1e-9)) {}

@@ -31,7 +31,7 @@ void rankBeads(std::span<const std::uint32_t> selection, const std::vector<std::
         layer.half_side = half_height - layer.radius;
         layer.inset = flatInset(2 * half_height, layer.radius);
         if (deposit.swells()) {
-            layer.most_rise = std::min(kMostRise, half_height);
+            layer.most_rise = std::min(kMostRise * stack.settling_scale, half_height);
             layer.crown = layer.radius > 0 ? 2 * half_height * deposit.crown : 0;
         }
         stack.layers.push_back(layer);
@@ -117,9 +117,12 @@ LayerStack stackLayers(const gcode::Toolpath& toolpath, std::span<const std::uin
         }
         group_of.push_back(last_group);
     }
+    if (toolpath.deposit.swells()) {
+        stack.settling_scale = settlingScale(toolpath);
+        stack.swell = std::make_shared<const SwellField>();
+    }
     rankBeads(selection, group_of, groups, toolpath.deposit, stack);
     if (toolpath.deposit.settles()) addSettling(stack);
-    if (toolpath.deposit.swells()) stack.swell = std::make_shared<const SwellField>();
     stack.extents.reserve(stack.direct().size());
     for (const std::uint32_t bead : stack.direct()) {
         const Bounds box = BeadField(toolpath, toolpath.beads[bead]).bounds();

@@ -54,6 +54,7 @@ struct LayerStack {
     std::vector<Extent> extents;       ///< of the direct beads, from first_direct on
     std::vector<std::shared_ptr<const SettlingCurve>> curves;  ///< one for each shape of section; empty for capsules
     std::shared_ptr<const SwellField> swell;                   ///< null where plastic that has no place goes nowhere
+    double settling_scale = 1;                                 ///< settlingScale(), where there is a swell
 
     std::span<const std::uint32_t> direct() const { return std::span(beads).subspan(first_direct); }
     /// Of a direct bead.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 namespace stratum::voxelize {
@@ -46,6 +47,14 @@ double SettlingCurve::level(double m) const {
         (filled > claimed ? low : high) = middle;
     }
     return 0.5 * (low + high);
+}
+
+double settlingScale(const gcode::Toolpath& toolpath) {
+    constexpr double kUsual = 0.4;  // mm
+    double lowest = std::numeric_limits<double>::infinity();
+    for (const gcode::Run& run : toolpath.runs)
+        if (run.height > 0) lowest = std::min(lowest, static_cast<double>(run.height));
+    return std::isfinite(lowest) ? std::max(lowest / kUsual, 1.0) : 1;
 }
 
 }  // namespace stratum::voxelize

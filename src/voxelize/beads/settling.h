@@ -16,6 +16,8 @@
 // Source of the section: Comminal et al. 2018, doi 10.1016/j.addma.2017.12.013.
 #pragma once
 
+#include "gcode/toolpath/toolpath.h"
+
 #include <vector>
 
 namespace stratum::voxelize {
@@ -53,10 +55,15 @@ private:
 constexpr double kOpposite = -0.9;
 constexpr double kTurnPenalty = 2;
 
-/// The most by which an outline moves out where plastic is left over, mm: see swell_field.h.
+/// Lengths of settling and of its measurement grow with the beads, so that a print ten times as large settles alike: 1
+/// for prints with layers of 0.4 mm and less, else the height of the lowest layer in units of that.
+double settlingScale(const gcode::Toolpath& toolpath);
+
+/// The most by which an outline moves out where plastic is left over, mm at a settlingScale() of 1: see swell_field.h.
 constexpr double kMostSwell = 0.1;
 
-/// The most by which the top of a layer is raised by what has no place in it, mm; less in layers lower than twice that.
+/// The most by which the top of a layer is raised by what has no place in it, mm at a settlingScale() of 1; less in
+/// layers lower than twice that.
 constexpr double kMostRise = 0.1;
 
 /// Outside the solid no slope of a settled field is larger: at most 2.82 as measured on real prints, in turns (above

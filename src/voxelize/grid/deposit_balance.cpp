@@ -26,15 +26,12 @@ double thickness(const Layer& layer, double d) {
     return d < layer.radius ? 2 * (layer.half_side + std::sqrt(layer.radius * layer.radius - d * d)) : 0;
 }
 
-// Columns of 0.4 mm, whatever the voxels are; of large beads, as wide as the thinnest layer is high, so that a bead of
+// Columns of 0.4 mm, whatever the voxels are; of large beads, as wide as the lowest layer is high, so that a bead of
 // some width has as many points.
 Lattice measuringLattice(const gcode::Toolpath& toolpath) {
     constexpr double kSpacing = 0.05;  // mm
-    double height = std::numeric_limits<double>::infinity();
-    for (const gcode::Run& run : toolpath.runs)
-        if (run.height > 0) height = std::min(height, static_cast<double>(run.height));
     Lattice lattice;
-    lattice.voxel_size = std::isfinite(height) ? std::max(kSpacing, height / kLeafDim) : kSpacing;
+    lattice.voxel_size = kSpacing * settlingScale(toolpath);
     lattice.half_width = 2;  // points lie up to a voxel beyond a leaf's outer samples
     return lattice;
 }

@@ -80,8 +80,8 @@ private:
     // Before all threads go up through the same few tiles.
     void makeSwell(const std::vector<Column>& columns) const {
         const LayerStack& stack = columns_.stack();
-        const auto node = [voxel = columns_.lattice().voxel_size](double index) {
-            return static_cast<int>(std::floor(index * voxel / kNodeSpacing));
+        const auto node = [voxel = columns_.lattice().voxel_size, spacing = nodeSpacing(stack)](double index) {
+            return static_cast<int>(std::floor(index * voxel / spacing));
         };
         NodeBox nodes;
         std::uint32_t first = std::numeric_limits<std::uint32_t>::max();

@@ -10,16 +10,17 @@ namespace stratum::voxelize {
 void LeafColumn::placeSwell() {
     swell_placed_ = true;
     swell_tiles_z_.reset();
-    const auto nodeBelow = [](double mm) { return static_cast<int>(std::floor(mm / kNodeSpacing)); };
+    const double spacing = nodeSpacing(stack_);
+    const auto nodeBelow = [spacing](double mm) { return static_cast<int>(std::floor(mm / spacing)); };
     first_node_i_ = nodeBelow(middle_x_ - half_extent_);
     first_node_j_ = nodeBelow(middle_y_ - half_extent_);
     nodes_i_ = nodeBelow(middle_x_ + half_extent_) + 2 - first_node_i_;
     nodes_j_ = nodeBelow(middle_y_ + half_extent_) + 2 - first_node_j_;
     swell_nodes_.resize(static_cast<std::size_t>(nodes_i_) * static_cast<std::size_t>(nodes_j_));
-    const auto rampsOf = [this](const PlanField& q, double middle, int first_node, int nodes, auto& ramps) {
+    const auto rampsOf = [this, spacing](const PlanField& q, double middle, int first_node, int nodes, auto& ramps) {
         ramps.resize(static_cast<std::size_t>(nodes - 1));
-        nodeRamps(q, static_cast<float>(1 / (scale_ * kNodeSpacing)),
-                  static_cast<float>(middle / kNodeSpacing - first_node), ramps);
+        nodeRamps(q, static_cast<float>(1 / (scale_ * spacing)), static_cast<float>(middle / spacing - first_node),
+                  ramps);
     };
     rampsOf(grid_.qx, middle_x_, first_node_i_, nodes_i_, ramps_x_);
     rampsOf(grid_.qy, middle_y_, first_node_j_, nodes_j_, ramps_y_);

@@ -11,7 +11,6 @@
 namespace stratum::voxelize {
 namespace {
 
-constexpr double kStep = 0.5 * kNodeSpacing;
 // Of a width: evenly, so that parallel lines lay the same everywhere.
 constexpr std::array<double, 3> kAcross{-1.0 / 3, 0, 1.0 / 3};
 
@@ -45,7 +44,12 @@ FedEnds fedEnds(const gcode::Toolpath& toolpath, std::uint32_t index) {
 }
 
 FedVolume::FedVolume(const gcode::Toolpath& toolpath, const LayerStack& stack, TilePlace place)
-    : toolpath_(toolpath), stack_(stack), first_x_(place.x * kSumCells), first_y_(place.y * kSumCells) {}
+    : toolpath_(toolpath),
+      stack_(stack),
+      first_x_(place.x * kSumCells),
+      first_y_(place.y * kSumCells),
+      spacing_(nodeSpacing(stack)),
+      unit_(stack.settling_scale * stack.settling_scale) {}
 
 void FedVolume::feed(std::uint32_t rank, std::span<TileSums::Node> nodes) const {
     const std::uint32_t index = stack_.beads[rank];
@@ -60,7 +64,7 @@ void FedVolume::feed(std::uint32_t rank, std::span<TileSums::Node> nodes) const 
     const double at_ends = feedEnds(index, volume, path, nodes);
     const double along = volume - at_ends;
     const double width = along / (height * length);
-    const int steps = std::max(static_cast<int>(std::ceil(length / kStep)), 1);
+    const int steps = std::max(static_cast<int>(std::ceil(length / (0.5 * spacing_))), 1);
     const double part = along / (steps * static_cast<double>(kAcross.size()));
     // Of a bead that widens, the change from its start to its end as a share of its section.
     const double change = bead.arc < 0 && width > 0 ? gcode::widening(toolpath_, bead) / width : 0;
@@ -119,8 +123,8 @@ std::pair<int, int> FedVolume::stepsInTile(const gcode::Bead& bead, const gcode:
         return withinSteps();
     }
     const auto clip = [&](double from, double to, int first) {
-        const double least = first * kNodeSpacing - more;
-        const double most = (first + kSumCells) * kNodeSpacing + more;
+        const double least = first * spacing_ - more;
+        const double most = (first + kSumCells) * spacing_ + more;
         if (std::abs(to - from) < more) return;
         const double a = (least - from) / (to - from);
         const double b = (most - from) / (to - from);
@@ -134,11 +138,11 @@ std::pair<int, int> FedVolume::stepsInTile(const gcode::Bead& bead, const gcode:
 
 // Seen from the center of an arc, the tile lies within an angle to both sides of its middle.
 std::pair<double, double> FedVolume::nearTile(const gcode::PlanPath& path, double more) const {
-    constexpr double kHalf = 0.5 * kSumCells * kNodeSpacing;
-    const double x = first_x_ * kNodeSpacing + kHalf - path.center().x;
-    const double y = first_y_ * kNodeSpacing + kHalf - path.center().y;
+    const double half = 0.5 * kSumCells * spacing_;
+    const double x = first_x_ * spacing_ + half - path.center().x;
+    const double y = first_y_ * spacing_ + half - path.center().y;
     const double away = std::hypot(x, y);
-    const double reach = std::numbers::sqrt2 * kHalf + more;
+    const double reach = std::numbers::sqrt2 * half + more;
     if (away <= reach) return {0, 1};
     if (std::abs(away - path.radius()) > reach) return {0, 0};
     const double to_sides = std::asin(reach / away);
@@ -158,14 +162,15 @@ std::pair<double, double> FedVolume::nearTile(const gcode::PlanPath& path, doubl
 }
 
 void FedVolume::addPoint(double x, double y, double volume, std::span<TileSums::Node> nodes) const {
-    const double in_x = x * (1 / kNodeSpacing) - first_x_;
-    const double in_y = y * (1 / kNodeSpacing) - first_y_;
+    const double in_x = x * (1 / spacing_) - first_x_;
+    const double in_y = y * (1 / spacing_) - first_y_;
     if (!(in_x >= 0 && in_x < kSumCells && in_y >= 0 && in_y < kSumCells)) return;
     const int i = static_cast<int>(in_x);
     const int j = static_cast<int>(in_y);
     const double fx = nodeShare(in_x - i);
     const double fy = nodeShare(in_y - j);
     const std::size_t at = nodeIndex(j, TileSums::kNodes, i);
+    volume /= unit_;
     TileSums::Node* const node = &nodes[at];
     node[0].surplus += static_cast<float>(volume * (1 - fx) * (1 - fy));
     node[1].surplus += static_cast<float>(volume * fx * (1 - fy));

@@ -46,6 +46,8 @@ private:
     const gcode::Toolpath& toolpath_;
     const LayerStack& stack_;
     const int first_x_, first_y_;  // nodes
+    const double spacing_;         // of them, mm
+    const double unit_;            // mm^3, of TileSums
 };
 
 // What a layer shares with its own round beads: plastic that was fed twice, and is surplus of the layer.

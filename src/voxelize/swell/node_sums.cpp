@@ -14,7 +14,7 @@ HWY_BEFORE_NAMESPACE();
 namespace stratum::voxelize {
 namespace HWY_NAMESPACE {
 
-void PressLayer(const PlanField& sides2, float radius, float straight, PressedLayer& out) {
+void PressLayer(const PlanField& sides2, float radius, float straight, double scale, PressedLayer& out) {
     const F f;
     const VF zero = hn::Zero(f);
     VF least = hn::Set(f, 3e38F);
@@ -24,7 +24,7 @@ void PressLayer(const PlanField& sides2, float radius, float straight, PressedLa
         least = hn::Min(least, side2);
         most = hn::Max(most, side2);
     });
-    const float reach = radius + static_cast<float>(kMostSwell);
+    const float reach = radius + static_cast<float>(kMostSwell * scale);
     out.kind = PressedLayer::Kind::nothing;
     if (hn::GetLane(hn::MinOfLanes(f, least)) >= reach * reach) return;
     out.kind = PressedLayer::Kind::flat;
@@ -48,7 +48,7 @@ void PressLayer(const PlanField& sides2, float radius, float straight, PressedLa
         std::memcpy(&word, bits, sizeof(word));
         out.solid |= word << c;
         for (std::size_t level = 1; level < PressedLayer::kFields; ++level) {
-            const auto swell = static_cast<float>(TileSums::kSwells[level - 1]);
+            const auto swell = static_cast<float>(TileSums::kSwells[level - 1] * scale);
             const VF moved = thickness(hn::Max(hn::Sub(side, hn::Set(f, swell)), zero));
             hn::Store(hn::Sub(moved, held), f, out.fields[level].v + c);
         }
@@ -151,8 +151,8 @@ HWY_EXPORT(PressLayer);
 HWY_EXPORT(AddFields);
 HWY_EXPORT(AddNodes);
 
-void pressLayer(const PlanField& sides2, float radius, float straight, PressedLayer& out) {
-    HWY_DYNAMIC_DISPATCH(PressLayer)(sides2, radius, straight, out);
+void pressLayer(const PlanField& sides2, float radius, float straight, double settling_scale, PressedLayer& out) {
+    HWY_DYNAMIC_DISPATCH(PressLayer)(sides2, radius, straight, settling_scale, out);
 }
 
 void addNodes(std::span<const TileSums::Node> nodes, float* surplus, float* gain0, float* gain1, float* gain2) {

@@ -29,7 +29,8 @@ struct PressedLayer {
 };
 
 /// Of a section with that radius and straight sides of the height `straight`, mm. `sides2` as of LeafColumn.
-void pressLayer(const PlanField& sides2, float radius, float straight, PressedLayer& out);
+/// `settling_scale`: LayerStack::settling_scale.
+void pressLayer(const PlanField& sides2, float radius, float straight, double settling_scale, PressedLayer& out);
 
 /// Adds the sums of nodes to a row of each kind.
 void addNodes(std::span<const TileSums::Node> nodes, float* surplus, float* gain0, float* gain1, float* gain2);

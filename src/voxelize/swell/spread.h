@@ -8,8 +8,8 @@
 
 namespace stratum::voxelize {
 
-/// A square of nodes of one layer, row by row: sums of tents, mm^3 and mm^2. Floats: their rounding is a millionth of
-/// what a node holds.
+/// A square of nodes of one layer, row by row: sums of tents, as TileSums has them. Floats: their rounding is a
+/// millionth of what a node holds.
 struct SpreadNodes {
     int edge = 0;
     std::vector<float> surplus;
@@ -60,7 +60,7 @@ private:
     std::vector<float> room_, around_, offered_, placed_, taken_;
 };
 
-/// The swell (mm) that gains `given` at node `n`.
+/// The swell (mm at a settlingScale() of 1) that gains `given` at node `n`.
 double swellThatGains(const SpreadNodes& nodes, std::size_t n, double given);
 
 }  // namespace stratum::voxelize

@@ -32,7 +32,8 @@ SwellField::~SwellField() = default;
 void SwellField::makeList(const gcode::Toolpath& toolpath, const LayerStack& stack) const {
     // Isolated: a thread that waits for its own loop must not take up work that waits for this list.
     tbb::this_task_arena::isolate([&] {
-        bins_ = std::make_unique<PlanBins>(toolpath, stack, cellLattice(), std::numeric_limits<std::size_t>::max());
+        bins_ = std::make_unique<PlanBins>(toolpath, stack, cellLattice(stack.settling_scale),
+                                           std::numeric_limits<std::size_t>::max());
     });
     needs_ = std::make_unique<LayerNeeds>(stack);
     constexpr int kBlockCells = PlanBins::kBlockColumns * kSquareCells;
@@ -133,8 +134,8 @@ void SwellField::letGo(const AllNeeded& needed) const {
 
 Swell SwellField::at(const gcode::Toolpath& toolpath, const LayerStack& stack, std::uint32_t layer, double x,
                      double y) const {
-    const double in_x = x / kNodeSpacing;
-    const double in_y = y / kNodeSpacing;
+    const double in_x = x / nodeSpacing(stack);
+    const double in_y = y / nodeSpacing(stack);
     const int i = static_cast<int>(std::floor(in_x));
     const int j = static_cast<int>(std::floor(in_y));
     Swell sum;

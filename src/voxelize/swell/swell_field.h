@@ -5,7 +5,7 @@
 // layer holds. The nozzle presses it sideways, into open grooves, slits and free edges nearby; what finds no room there
 // stands up beside the nozzle, if no other layer lies on it.
 // A layer's plan distance u becomes u - swell, and what is above its center plane is moved up by the rise (mm). Both
-// are interpolated between nodes kNodeSpacing apart, by nodeShare() along each axis:
+// are interpolated between nodes nodeSpacing() apart, by nodeShare() along each axis:
 //   1. Sums over each node's tent (its weight in that), by kColumnSamples points of a lattice rule in each
 //      square of two by two cells: what was fed, by the beads' exact volumes along their paths; what the layer holds,
 //      without what it shares with layers before it and with its round beads (fed_volume.h); what it gains
@@ -81,7 +81,8 @@ private:
 
 class LayerNeeds;
 
-constexpr double kNodeSpacing = 0.4;  ///< mm
+constexpr double kNodeSpacing = 0.4;  ///< mm, at a settlingScale() of 1
+inline double nodeSpacing(const LayerStack& stack) { return kNodeSpacing * stack.settling_scale; }
 /// Along the edge of a tile. A tile's halo is spread with it: larger ones compute less twice, and a brick waits longer.
 constexpr int kTileCells = 32;
 /// Along the edge of a tile of sums. A tile needs the sums of those that it covers, and of those next to it.
@@ -121,22 +122,24 @@ inline std::uint32_t tilesHigh(const LayerStack& stack) {
     return static_cast<std::uint32_t>((stack.layers.size() + kTileLayers - 1) / kTileLayers);
 }
 
-/// What a tile's layers hold, by its kSumCells + 1 nodes along each edge: sums over the tile's own cells.
+/// What a tile's layers hold, by its kSumCells + 1 nodes along each edge: sums over the tile's own cells. Areas, and
+/// with them volumes, are in units of the square of LayerStack::settling_scale, so that the weights of points are the
+/// same for all prints.
 struct TileSums {
     static constexpr int kNodes = kSumCells + 1;
     static constexpr int kLevels = 3;
-    /// mm. Closer where they are small: slits between lines are full after some micrometres, so the gain of a first
-    /// small swell is much larger than that of the next.
+    /// mm at a settlingScale() of 1. Closer where they are small: slits between lines are full after some micrometres,
+    /// so the gain of a first small swell is much larger than that of the next.
     static constexpr std::array<double, kLevels> kSwells{kMostSwell / 9, kMostSwell * 4 / 9, kMostSwell};
     struct Node {
-        float surplus = 0;                  ///< mm^3, fed less held
-        std::array<float, kLevels> gain{};  ///< mm^3, where outlines move out by kSwells
+        float surplus = 0;                  ///< mm^3 per scale^2, fed less held
+        std::array<float, kLevels> gain{};  ///< mm^3 per scale^2, where outlines move out by kSwells
     };
     struct Layer {
         NodeBox box;  ///< of the nodes that are not 0; of each kind those, row by row
         std::vector<Node> nodes;
-        std::vector<float> open;   ///< mm^2 of the plan with no layer welded to it from above; empty: none
-        std::vector<float> solid;  ///< mm^2 with plastic; only with crowns; empty: none
+        std::vector<float> open;   ///< mm^2 per scale^2 of the plan with no layer welded to it from above; empty: none
+        std::vector<float> solid;  ///< mm^2 per scale^2 with plastic; only with crowns; empty: none
 
         /// Of a node in the box.
         std::size_t placeOf(int row, int column) const {

@@ -139,7 +139,7 @@ private:
                     goes_on.push_back({at, volumes});
                 }
                 if (!own) continue;
-                out_.set(layer, at, swellThatGains(nodes, n, given));
+                out_.set(layer, at, swellThatGains(nodes, n, given) * stack_.settling_scale);
                 if (!(open > 0)) continue;
                 rise_.set(layer, at, std::min(raised / open, of.most_rise));
                 if (crowned) open_.set(layer, at, openShare(layer, at, open));

@@ -30,9 +30,9 @@ struct WholeLayer {
     bool used = false, any_open = false, any_solid = false;
 };
 
-// The points of a column of cellLattice(), from the middle of its square.
+// The points of a column of cellLattice(1), from the middle of its square.
 ColumnGrid pointsOfSquare() {
-    const auto voxel = static_cast<float>(cellLattice().voxel_size);
+    const auto voxel = static_cast<float>(cellLattice(1).voxel_size);
     ColumnGrid points = ColumnGrid::spread(voxel);
     // The column has its middle between its samples.
     for (std::size_t c = 0; c < kColumnSamples; ++c) {
@@ -50,7 +50,7 @@ struct TopFields {
 // What a column's layers hold and gain, added to the nodes of its square.
 class ColumnSums {
 public:
-    ColumnSums() : nodes_(pointsOfSquare()) {}
+    explicit ColumnSums(double settling_scale) : settling_scale_(settling_scale) {}
 
     // Returns the points with plastic, bit c for point c.
     // `tops`: if not null, the highest plastic of the layers below at each point, mm: what this layer shares with them
@@ -62,7 +62,7 @@ public:
         PlanField shared_with_direct;
         const auto radius = static_cast<float>(layer.radius);
         const auto straight = static_cast<float>(2 * layer.half_side);
-        pressLayer(sides2, radius, straight, pressed);
+        pressLayer(sides2, radius, straight, settling_scale_, pressed);
         if (pressed.kind == PressedLayer::Kind::nothing) return 0;
         if (pressed.kind == PressedLayer::Kind::flat) {
             pressed.solid = kAllPoints;
@@ -167,8 +167,19 @@ private:
         return ones;
     }
 
-    const NodeSums nodes_;
-    const std::array<std::array<float, 8>, 256> ones_ = onesOfBytes();
+    static const NodeSums& nodesOfSquare() {
+        static const NodeSums kNodeSums(pointsOfSquare());
+        return kNodeSums;
+    }
+    using Ones = std::array<std::array<float, 8>, 256>;
+    static const Ones& onesOfAllBytes() {
+        static const Ones kOnes = onesOfBytes();
+        return kOnes;
+    }
+
+    const double settling_scale_;
+    const NodeSums& nodes_ = nodesOfSquare();
+    const Ones& ones_ = onesOfAllBytes();
 };
 
 // Of the nodes that are not 0.
@@ -283,18 +294,18 @@ private:
 
 }  // namespace
 
-Lattice cellLattice() {
+Lattice cellLattice(double settling_scale) {
     Lattice lattice;
-    lattice.voxel_size = kSquareCells * kNodeSpacing / kLeafDim;
+    lattice.voxel_size = kSquareCells * kNodeSpacing * settling_scale / kLeafDim;
     lattice.half_width = 2;  // points lie up to a voxel beyond a leaf's outer samples
     return lattice;
 }
 
 TileSums sumTile(const gcode::Toolpath& toolpath, const LayerStack& stack, const LayerNeeds& needs,
                  const PlanBins& bins, TilePlace place) {
-    static const ColumnSums kSums;
-    const Lattice lattice = cellLattice();
+    const Lattice lattice = cellLattice(stack.settling_scale);
     const TileLayers own(stack, needs, place);
+    const ColumnSums column_sums(stack.settling_scale);
     LeafColumn column(toolpath, stack, lattice, 1, LeafColumn::Kind::spread_without_swell);
     DirectOverlap direct(toolpath, stack, own.bottom(), own.top());
     thread_local std::array<WholeLayer, kTileLayers> whole;
@@ -329,7 +340,7 @@ TileSums sumTile(const gcode::Toolpath& toolpath, const LayerStack& stack, const
                 WholeLayer* const sums = own.owns(layer) ? &sumsOf(layer) : nullptr;
                 PlanField* const tops_below = needs.takes(layer) || needs.gives(layer) ? &highest : nullptr;
                 const DirectOverlap* const met = sums != nullptr && direct.meets(of) ? &direct : nullptr;
-                const std::uint64_t solid = kSums.add(of, sides2, first_node, sums, tops_below, met);
+                const std::uint64_t solid = column_sums.add(of, sides2, first_node, sums, tops_below, met);
                 if (solid == 0) return;
                 addTop(layer, solid, tops);
                 if (sums == nullptr || !(of.crown > 0)) return;
@@ -341,8 +352,8 @@ TileSums sumTile(const gcode::Toolpath& toolpath, const LayerStack& stack, const
                 const OpenTop& top = tops[n];
                 if (!own.owns(top.layer)) continue;
                 const Layer& of = stack.layers[top.layer];
-                kSums.addTop(of, top.solid, top.open, of.crown > 0 ? &fields[n] : nullptr, first_node,
-                             sumsOf(top.layer));
+                column_sums.addTop(of, top.solid, top.open, of.crown > 0 ? &fields[n] : nullptr, first_node,
+                                   sumsOf(top.layer));
             }
         }
     const FedVolume fed(toolpath, stack, place);

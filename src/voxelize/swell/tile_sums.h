@@ -6,8 +6,8 @@
 
 namespace stratum::voxelize {
 
-/// The lattice whose leaf columns are squares of two by two cells.
-Lattice cellLattice();
+/// The lattice whose leaf columns are squares of two by two cells, of LayerStack::settling_scale.
+Lattice cellLattice(double settling_scale);
 
 /// Of the tile of kSumCells there. `bins`: of cellLattice().
 TileSums sumTile(const gcode::Toolpath& toolpath, const LayerStack& stack, const LayerNeeds& needs,

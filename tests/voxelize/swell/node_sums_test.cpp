@@ -58,7 +58,7 @@ TEST(PressedLayer, HoldsAndGainsWhatTheSectionDoes) {
     PlanField sides2;
     for (std::size_t c = 0; c < kColumnSamples; ++c) sides2.v[c] = 0.0006F * static_cast<float>(c);
     PressedLayer pressed;
-    pressLayer(sides2, 0.1F, 0.06F, pressed);
+    pressLayer(sides2, 0.1F, 0.06F, 1, pressed);
     ASSERT_EQ(pressed.kind, PressedLayer::Kind::some);
     const auto thickness = [](double side) { return side < 0.1 ? 0.06 + 2 * std::sqrt(0.01 - side * side) : 0; };
     for (std::size_t c = 0; c < kColumnSamples; ++c) {
@@ -71,10 +71,10 @@ TEST(PressedLayer, HoldsAndGainsWhatTheSectionDoes) {
         EXPECT_EQ(pressed.solid >> c & 1, pressed.fields[0].v[c] < 0 ? 1U : 0U);
     }
     sides2 = {};
-    pressLayer(sides2, 0.1F, 0.06F, pressed);
+    pressLayer(sides2, 0.1F, 0.06F, 1, pressed);
     EXPECT_EQ(pressed.kind, PressedLayer::Kind::flat);
     std::fill(std::begin(sides2.v), std::end(sides2.v), 0.041F);
-    pressLayer(sides2, 0.1F, 0.06F, pressed);
+    pressLayer(sides2, 0.1F, 0.06F, 1, pressed);
     EXPECT_EQ(pressed.kind, PressedLayer::Kind::nothing);
 }
 
@@ -145,7 +145,7 @@ TEST(SwellKernels, EveryInstructionSetGivesTheSameBytes) {
         PlanField positive = sides2;
         for (float& v : positive.v) v = std::max(v, 0.0F);
         PressedLayer pressed;
-        pressLayer(positive, 0.1F, 0.06F, pressed);
+        pressLayer(positive, 0.1F, 0.06F, 1, pressed);
         r.fields = pressed.fields;
         r.solid = pressed.solid;
         r.sums = NodeSums(grid).of(pressed.fields);

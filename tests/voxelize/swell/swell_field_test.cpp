@@ -73,6 +73,44 @@ TEST(SwellField, InfillThatEndsInAWallLosesNothing) {
     }
 }
 
+// All lengths `factor` times as large.
+gcode::Toolpath enlarged(gcode::Toolpath toolpath, float factor) {
+    for (gcode::Bead& bead : toolpath.beads) {
+        for (auto* const plan : {&bead.x0, &bead.y0, &bead.x1, &bead.y1}) *plan = factor * *plan;
+        for (auto* const z : {&bead.z0, &bead.z1}) *z = factor * *z;
+        bead.width *= factor;
+    }
+    for (gcode::Run& run : toolpath.runs) run.height *= factor;
+    return toolpath;
+}
+
+TEST(SwellField, APrintTenTimesAsLargeSettlesAlike) {
+    gcode::Toolpath usual = enlarged(sparse(), 2);  // layers of 0.4 mm
+    gcode::Toolpath large = enlarged(usual, 10);
+    EXPECT_EQ(settlingScale(sparse()), 1);
+    EXPECT_NEAR(settlingScale(usual), 1, 1e-6);
+    EXPECT_NEAR(settlingScale(large), 10, 1e-5);
+    const DepositBalance balance = balanceOf(usual);
+    const DepositBalance of_large = balanceOf(large);
+    EXPECT_GT(balance.pressed_out, 0.002 * balance.all.fed);
+    EXPECT_NEAR(of_large.pressed_out / 1000, balance.pressed_out, 1e-4 * balance.all.fed);
+    EXPECT_NEAR(of_large.raised / 1000, balance.raised, 1e-4 * balance.all.fed);
+    EXPECT_NEAR(of_large.held() / 1000, balance.held(), 1e-4 * balance.all.fed);
+    const LayerStack stack = stackLayers(usual, test::allBeads(usual));
+    const LayerStack of_stack = stackLayers(large, test::allBeads(large));
+    double most = 0;
+    for (double x = -9; x <= 9; x += 0.37)
+        for (double y = -9; y <= 9; y += 0.41)
+            for (const std::uint32_t layer : {0U, 1U}) {
+                const Swell at = stack.swell->at(usual, stack, layer, x, y);
+                const Swell in_large = of_stack.swell->at(large, of_stack, layer, 10 * x, 10 * y);
+                EXPECT_NEAR(in_large.out, 10 * at.out, 2e-3) << x << ' ' << y;
+                EXPECT_NEAR(in_large.rise, 10 * at.rise, 2e-3) << x << ' ' << y;
+                most = std::max(most, at.out);
+            }
+    EXPECT_GT(most, 0.02);
+}
+
 TEST(SwellField, TheGridHoldsWhatTheBalanceSays) {
     gcode::Toolpath toolpath = sparse();
     const DepositBalance balance = balanceOf(toolpath);

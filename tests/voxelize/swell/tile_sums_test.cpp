@@ -21,7 +21,7 @@ struct Totals {
 Totals totalsOf(gcode::Toolpath& toolpath) {
     toolpath.deposit.beads = gcode::DepositModel::Beads::settled;
     const LayerStack stack = stackLayers(toolpath, test::allBeads(toolpath));
-    const PlanBins bins(toolpath, stack, cellLattice(), std::numeric_limits<std::size_t>::max());
+    const PlanBins bins(toolpath, stack, cellLattice(1), std::numeric_limits<std::size_t>::max());
     Totals totals;
     const LayerNeeds needs(stack);
     for (int y = -8; y <= 8; ++y)
