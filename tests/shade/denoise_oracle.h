@@ -44,7 +44,8 @@ public:
             }
         std::array<double, 3> value{};
         for (std::size_t c = 0; c < 3; ++c)
-            value[c] = std::max(0.0, system[kUnknowns - 1][kUnknowns + c] / system[kUnknowns - 1][kUnknowns - 1]);
+            value[c] =
+                inRange(system[kUnknowns - 1][kUnknowns + c] / system[kUnknowns - 1][kUnknowns - 1], x, y, int(c));
         return value;
     }
 
@@ -65,6 +66,14 @@ private:
         return std::nan("");
     }
     const shade::Color& color(int x, int y) const { return film_.pixels()[index(x, y)].rgb; }
+    /// Of the 3 x 3 pixels around.
+    double inRange(double value, int x, int y, int c) const {
+        std::vector<float> near;
+        for (int dy = -1; dy <= 1; ++dy)
+            for (int dx = -1; dx <= 1; ++dx) near.push_back(color(x + dx, y + dy)[c]);
+        const auto [least, most] = std::minmax_element(near.begin(), near.end());
+        return std::clamp(value, double(*least), double(*most));
+    }
     double variance(int x, int y) const {
         double sum = 0;
         for (int dy = -1; dy <= 1; ++dy)

@@ -102,6 +102,30 @@ TEST(Denoise, IsTheEstimatorThatItSays) {
     EXPECT_LT(worst, 2e-3);
 }
 
+// A very bright sample turns the linear functions around it: pixels beside it were ten times too dark.
+TEST(Denoise, OneBrightSampleDoesNotDarkenOthers) {
+    const Film clean = vase(16, 1);
+    Film expected = clean;
+    shade::denoise(expected);
+    const int width = clean.width();
+    float darkest = 1;
+    for (int y = 4; y < clean.height() - 4; y += 5)
+        for (int x = 4; x < width - 4; x += 7) {
+            Film film = clean;
+            const auto at = std::size_t(y) * std::size_t(width) + std::size_t(x);
+            const float bright = 40 * shade::luminance(film.pixels()[at].rgb);
+            film.pixels()[at].rgb = {bright, bright, bright};
+            for (shade::FilmLayer& layer : film.layers())
+                if (layer.name == "variance") layer.values[at] = bright * bright;
+            shade::denoise(film);
+            for (std::size_t n = 0; n < film.pixels().size(); ++n)
+                darkest = std::min(darkest, shade::luminance(film.pixels()[n].rgb) /
+                                                (shade::luminance(expected.pixels()[n].rgb) + 1e-3f));
+        }
+    std::printf("at least %.2f of the light that is there without it\n", double(darkest));
+    EXPECT_GT(darkest, 0.4f);
+}
+
 /// The middle of a ball of glitter, whose flakes are a few pixels large.
 Film glitter(int spp, std::uint32_t seed) {
     const auto print = test::sphere({0, 0, 5}, 5.0);
