@@ -186,12 +186,22 @@ void BeadRecorder::finish() {
     if (marked && levels(kRisen) < kRisen) return;
     layer_marks_ = false;
     next_.layer = 0;
-    std::size_t done = 0;
-    for (const Bead& bead : toolpath_.beads) {
+    // A run of a known height goes on from level to level: each layer needs its own.
+    const std::vector<Run> before = std::exchange(runs, {});
+    const std::vector<double> z_before = std::exchange(run_z_, {});
+    std::optional<std::uint32_t> last;
+    for (Bead& bead : toolpath_.beads) {
         const Point from{bead.x0, bead.y0, bead.z0};
         const Point to{bead.x1, bead.y1, bead.z1};
-        countLayer(from, to, std::abs(to.z - from.z) > kSameZ);
-        for (; done <= bead.run; ++done) runs[done].layer = next_.layer;
+        const bool before_mark = marked && before[bead.run].layer == 0;
+        if (!before_mark) countLayer(from, to, std::abs(to.z - from.z) > kSameZ);
+        if (last != bead.run || runs.back().layer != next_.layer) {
+            last = bead.run;
+            runs.push_back(before[bead.run]);
+            runs.back().layer = next_.layer;
+            run_z_.push_back(z_before[bead.run]);
+        }
+        bead.run = static_cast<std::uint32_t>(runs.size() - 1);
     }
 }
 

@@ -222,6 +222,13 @@ TEST(WorldFiles, APrintThatRisesUnderOneMarkHasLayers) {
     for (int n = 1; n <= 5; ++n) text += fmt::format("G1 X0 Y0 Z{}\nG1 X20 E1\n", n);
     EXPECT_EQ(readProgram(text).layer_count, 5U);
     EXPECT_EQ(readProgram("M83\n;LAYER:0\nG1 Z1\nG1 X20 E1\nG1 Z2\nG1 X0 E1\n").layer_count, 1U);
+    // A script's print in another slicer's program, which states heights: its runs have no levels of their own. What
+    // was laid before the mark is in no layer.
+    text = "M83\n; LAYER_HEIGHT: 0.2\nG1 X0 Y9 Z0.2\nG1 X20 E1\n; CHANGE_LAYER\n; Z_HEIGHT: 0.2\n; LAYER_HEIGHT: 0.2\n";
+    for (int n = 0; n < 5; ++n) text += fmt::format("G1 X0 Y0 Z{}\nG1 X20 E1\n", 0.1 + 0.2 * n);
+    const Toolpath script = readProgram(text);
+    EXPECT_EQ(script.layer_count, 5U);
+    for (std::size_t n = 0; n < script.beads.size(); ++n) EXPECT_EQ(script.runOf(script.beads[n]).layer, n);
 }
 
 // Of each bead.
