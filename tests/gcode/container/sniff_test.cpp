@@ -57,6 +57,9 @@ TEST(Sniff, OtherPeoplesFiles) {
         {"3DPFNKG13WTW", "XYZprinting"},
         {"\x95\0\x20\x01SFX\0\x88\0"s, ".x3g"},
         {"{\"a\": 1}", "JSON"},
+        {"NanoVDB0\2\x10\0\4"s, "NanoVDB"},
+        {"\x76\x2f\x31\x01\2\0\0\0"s, "OpenEXR"},
+        {"#?RADIANCE\n", "map of light"},
     };
     for (const SniffCase& c : cases) {
         try {
