@@ -136,7 +136,9 @@ void BeadRecorder::markLayer(const Tag& mark) {
     }
     // One layer, marked once by each process that prints in it, or once by the slicer and once by who asked for it.
     const bool same_z = mark.z && mark_z_ && std::abs(*mark.z - *mark_z_) < kSameZ;
-    const bool again = !mark_.empty() && mark.text != mark_ && toolpath_.beads.size() == beads_before_mark_;
+    const bool empty = !mark_.empty() && toolpath_.beads.size() == beads_before_mark_;
+    const bool again = empty && (mark.text != mark_ || marked_twice_);
+    marked_twice_ = again;
     if (mark.height > 0) tag({.kind = Tag::Kind::height, .height = mark.height}, 0);
     if (again) return;
     if (!same_z) ++next_.layer;

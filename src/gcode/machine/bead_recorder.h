@@ -91,6 +91,7 @@ private:
     bool part_started_ = false;
     bool features_ = false;         // some tag has named one
     std::string_view mark_;         // the words of the last layer mark
+    bool marked_twice_ = false;     // others came behind it, without a bead between
     std::optional<double> mark_z_;  // its z, if it states one
     std::size_t beads_before_mark_ = 0;
     bool marks_repeat_ = false;

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace stratum::gcode {
@@ -58,6 +59,13 @@ std::size_t trailingNumber(std::string_view text) {
     return number;
 }
 
+// RepRapFirmware's meta commands that only set and write (docs.duet3d.com, "GCode Meta Commands").
+bool isStatement(std::string_view name) {
+    constexpr std::array<std::string_view, 4> kStatements{"SET", "VAR", "GLOBAL", "ECHO"};
+    return std::any_of(kStatements.begin(), kStatements.end(),
+                       [name](std::string_view one) { return same(name, one); });
+}
+
 }  // namespace
 
 void Machine::executeMacro(const Command& command) {
@@ -105,7 +113,7 @@ void Machine::executeMacro(const Command& command) {
     } else if (moves_ != nullptr && same(name, "SET_PRESSURE_ADVANCE")) {
         if (const auto advance = numberArgument(command.text, "ADVANCE"))
             moves_->pressureAdvance("SET_PRESSURE_ADVANCE ADVANCE=", *advance, line_);
-    } else if (!isHarmlessMacro(name)) {
+    } else if (!isHarmlessMacro(name) && !isStatement(name)) {
         warn(fmt::format("macro {} is not in the file; what it prints or moves is not in the toolpath",
                          name.substr(0, 60)));
     }
@@ -122,6 +130,13 @@ void Machine::setVelocityLimit(std::string_view text) {
 void Machine::setMacroOffset(std::string_view text) {
     constexpr std::array<std::string_view, 3> kAbsolute{"X", "Y", "Z"};
     constexpr std::array<std::string_view, 3> kRelative{"X_ADJUST", "Y_ADJUST", "Z_ADJUST"};
+    // Behind a change of tool it is that nozzle's place, which its program's coordinates are to be free of, as with
+    // M218.
+    const std::size_t beads = recorder_.toolpath().beads.size();
+    if (beads > 0 && beads == beads_at_tool_) {
+        warn("SET_GCODE_OFFSET behind a change of tool tells where that nozzle is; ignored, as M218 is");
+        return;
+    }
     const bool moves = numberArgument(text, "MOVE").value_or(0) != 0;
     Point target = frame_.position();
     for (std::size_t axis = 0; axis < 3; ++axis) {

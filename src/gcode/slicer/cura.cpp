@@ -131,6 +131,7 @@ constexpr std::array kMachines{
     Machines{"anycubicmegazero",       {500, 500, 5, 30}, 500, 500, 100, 5000, 500, 10, .4, 5},
     Machines{"anycubici3megas",        {kNone, kNone, kNone, kNone}, 3000, 3000, 3000, 3000, 3000, 10, .4, 5},
     Machines{"anycubic4max",           {300, 300, 10, kNone}, 1500, 1500, 100, 10000, 1500, 11, .4, 11},
+    Machines{"elegooneptune4",         {kNone, kNone, kNone, kNone}, 5000, 5000, 100, 5000, 3000, 8, .4, 5},
     Machines{"elegoo",                 {kNone, kNone, kNone, kNone}, 1000, 1000, 100, 5000, 1000, 8, .4, 5},
     Machines{"koonovo",                {200, 200, 50, 100}, 500, 500, 50, 2000, 500, 20, .4, 5},
     Machines{"flyingbearghost4",       {200, 200, 20, 70}, 1000, 1000, 100, 1000, 1000, 20, .4, 5},

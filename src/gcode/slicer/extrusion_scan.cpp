@@ -30,6 +30,10 @@ public:
                 if (e < *last_) ++falls_;
             }
         }
+        if (last_) {
+            net_ += e - *last_;
+            gross_ += std::abs(e - *last_);
+        }
         last_ = e;
     }
     // E was set, or moves are left out.
@@ -37,7 +41,9 @@ public:
 
     bool enough() const { return moves_ >= kEnoughMoves; }
     bool areIncrements() const {
-        return pairs_ >= kFewestPairs &&
+        // Absolute E climbs all the same, where each line begins with a wipe.
+        const bool climbs = net_ > 0.5 * gross_;
+        return pairs_ >= kFewestPairs && !climbs &&
                (falls_ * kFallsInChanges > rises_ + falls_ || rises_ * kPairsInRises <= pairs_);
     }
     // Some number is not above the one before, and none shows a retraction as absolute E writes it: back to less, in
@@ -51,6 +57,7 @@ private:
     std::size_t falls_ = 0;
     bool drawn_back_ = false;
     std::optional<double> last_;
+    double net_ = 0, gross_ = 0;  // mm
 };
 
 // Whether the first E is where a part of a program begins that counts absolute E from before: far more a length than
@@ -126,7 +133,7 @@ public:
         if (command.hasValue('E')) return extrusion(plan, command);
         beginning_.travel(command);
         bare_on_ = bare_on_ || (plan && on_);
-        if (plan && (command.hasValue('A') || command.hasValue('B'))) ab_ = true;
+        if (plan && (command.hasValue('A') || command.hasValue('B'))) ++ab_moves_;
         return true;
     }
 
@@ -134,7 +141,9 @@ public:
         using Drive = ExtrusionScan::Drive;
         // Skeinforge's own moves have no E; a purge in the start program may.
         if (bare_on_ && !e_on_ && !mode_) return {.drive = Drive::switched};
-        if (!e_) return {.drive = ab_ && !spindle_ ? Drive::axes_ab : switch_ ? Drive::switched : Drive::e_word};
+        // A prime line in the start program of MakerBot's machines may have E, too.
+        if (ab_moves_ > e_moves_ && !mode_ && !spindle_) return {.drive = Drive::axes_ab};
+        if (!e_) return {.drive = switch_ ? Drive::switched : Drive::e_word};
         return {.falls_back = changes_.areIncrements(),
                 .mode_follows = mode_follows_,
                 .repeats = changes_.repeat(),
@@ -155,6 +164,7 @@ private:
 
     bool extrusion(bool plan, const Command& command) {
         e_ = true;
+        if (plan) ++e_moves_;
         e_on_ = e_on_ || on_;
         const bool more = beginning_.extrude(command);
         if (mode_) return more;
@@ -166,11 +176,11 @@ private:
     bool mode_ = false;
     bool mode_follows_ = false;
     bool switch_ = false;
-    bool on_ = false;       // between M101 and M103
-    bool e_on_ = false;     // E moves there
-    bool bare_on_ = false;  // moves there have none
-    bool ab_ = false;
-    bool spindle_ = false;  // then A and B turn what is milled
+    bool on_ = false;                         // between M101 and M103
+    bool e_on_ = false;                       // E moves there
+    bool bare_on_ = false;                    // moves there have none
+    std::size_t e_moves_ = 0, ab_moves_ = 0;  // in the plane
+    bool spindle_ = false;                    // then A and B turn what is milled
     bool e_ = false;
     Changes changes_;
     Beginning beginning_;

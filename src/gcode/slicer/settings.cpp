@@ -265,7 +265,8 @@ private:
             name(upTo(text, " - "));
         } else if (takePrefix(text, "Sliced by ")) {
             name(upTo(text, ","));
-        } else if (text.starts_with("Miracle-Grue ") || takePrefix(text, "Generated with: ") ||  // REALvision
+        } else if (text.starts_with("Miracle-Grue ") || text.starts_with("Miracle Grue ") ||
+                   takePrefix(text, "Generated with: ") ||  // REALvision
                    takePrefix(text, "GENERATOR.NAME:")) {
             name(text);
         } else if (takePrefix(text, "GENERATOR.VERSION:")) {

@@ -60,6 +60,11 @@ public:
         p_ = skipBlanks(p_, end_);
         if (p_ != end_ && *p_ == '=')
             return;  // "===== record data =====": a comment whose ';' is missing (Bambu's H2C)
+        if (p_ != end_ && *p_ == '@' && !isPause()) return;
+        if (p_ != end_ && *p_ == '{') {  // "{if layer_z == 0.8}M600": a condition that no slicer has replaced
+            line_.unreadable = true;
+            return;
+        }
         if (p_ != end_ && *p_ == '/') {
             line_.deleted = p_ + 1 == end_ || p_[1] != '/';  // two of them are a comment
             return;
@@ -70,6 +75,8 @@ public:
                 ++p_;
             } else if (isLetter(c)) {
                 word();
+            } else if (c == '_' && line_.count == 0) {
+                extended();
             } else if (c == ';') {
                 closeText(p_);
                 line_.comment = view(p_ + 1, end_);
@@ -106,6 +113,13 @@ private:
         }
         unbalanced_ = true;  // once a line: time stays linear
         return first;
+    }
+
+    // Of what begins with '@' for the host, which keeps it from the printer (OctoPrint), "@pause" stops the print.
+    bool isPause() const {
+        constexpr std::string_view kPause = "@PAUSE";
+        return std::equal(kPause.begin(), kPause.end(), p_, std::min(p_ + kPause.size(), end_),
+                          [](char a, char b) { return a == upper(b); });
     }
 
     // "X10,5": a comma between the digits of a word of a command.
@@ -154,6 +168,10 @@ private:
         if (parseNumber(next, end_, value)) {
             command_->set(letter, value);
             p_ = next;
+            if (p_ != end_ && *p_ == '[') {  // "Z0.3[first_layer_height]": its letters are no words
+                line_.unreadable = true;
+                p_ = behindBraces(p_);
+            }
         } else if (next != end_ && (*next == '{' || *next == '[')) {
             // "[first_layer_height]": a slicer's name that nobody has replaced.
             command_->setExpression(letter);

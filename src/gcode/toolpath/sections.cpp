@@ -235,8 +235,10 @@ void correctByPlace(const Toolpath& toolpath, std::span<const double> run_z, std
             heights[k] = heights[k - 1];
 }
 
-// Bridging threads and ironing are round in any layer: their height follows from their own area.
-void roundByFeature(const Toolpath& toolpath, std::vector<double>& heights) {
+// Bridging threads and ironing are round in any layer, and so is what hangs high above the bed with nothing between:
+// their height follows from their own area.
+void roundByArea(const Toolpath& toolpath, std::span<const double> run_z, std::vector<double>& heights) {
+    constexpr double kHigh = 2;  // diameters
     std::vector<double> area(toolpath.runs.size());
     std::vector<double> length(toolpath.runs.size());
     for (const Bead& bead : toolpath.beads) {
@@ -251,6 +253,8 @@ void roundByFeature(const Toolpath& toolpath, std::vector<double>& heights) {
         if (run.feature == Feature::bridge) heights[k] = std::max(heights[k], std::min(diameter, kMostBridge));
         if (run.feature == Feature::ironing && heights[k] >= kLeastHeight)
             heights[k] = std::clamp(diameter, kLeastHeight, heights[k]);
+        if (run.layer > 0 && heights[k] == run_z[k] && heights[k] > std::max(kHigh * diameter, kMostRise))
+            heights[k] = std::max(diameter, kLeastHeight);
     }
 }
 
@@ -312,7 +316,7 @@ std::vector<double> findHeights(Toolpath& toolpath, std::span<const double> run_
         correctByPlace(toolpath, run_z, nominal, first_level, heights);
         if (!nominal) recountSpiral(toolpath, run_z, heights);
     }
-    roundByFeature(toolpath, heights);
+    roundByArea(toolpath, run_z, heights);
 
     std::vector<std::uint32_t> lines(count);
     for (auto bead = toolpath.beads.rbegin(); bead != toolpath.beads.rend(); ++bead)

@@ -225,6 +225,9 @@ std::vector<std::uint32_t> selectBeads(const gcode::Toolpath& toolpath, const Se
     for (std::uint32_t i = 0; i < toolpath.beads.size(); ++i)
         if (run_kept[toolpath.beads[i].run]) beads.push_back(i);
     if (beads.empty()) {
+        if (toolpath.layer_count == 0)
+            throw InputError(
+                "nothing of a print is in the program, only prime lines before its first layer; is the file whole?");
         std::array<bool, gcode::kFeatureCount> present{};
         for (const gcode::Run& run : toolpath.runs) present[static_cast<std::size_t>(run.feature)] = true;
         std::string names;

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <initializer_list>
 #include <numbers>
 #include <string>
@@ -229,6 +230,72 @@ TEST(WorldFiles, APrintThatRisesUnderOneMarkHasLayers) {
     const Toolpath script = readProgram(text);
     EXPECT_EQ(script.layer_count, 5U);
     for (std::size_t n = 0; n < script.beads.size(); ++n) EXPECT_EQ(script.runOf(script.beads[n]).layer, n);
+}
+
+// ElegooSlicer's start program has Cura's mark, and each layer both.
+TEST(WorldFiles, TwoKindsOfMarksAreOneLayer) {
+    std::string text = "M83\n;LAYER:0\n";
+    for (int n = 1; n <= 4; ++n)
+        text += fmt::format(";LAYER_CHANGE\n;Z:{0:.1f}\n;LAYER:{1}\nG1 X0 Y0 Z{0:.1f}\nG1 X20 E1\n", 0.2 * n, n);
+    const Toolpath toolpath = readProgram(text);
+    EXPECT_EQ(toolpath.layer_count, 4U);
+    EXPECT_EQ(toolpath.runOf(toolpath.beads.front()).layer, 1U);
+}
+
+// MakerWare's programs that others changed: E in the start program, A in the print.
+TEST(WorldFiles, APrimeLineWithEHidesNoPrintWithA) {
+    std::string text = "; Miracle Grue 3.9.4\nG1 X-100 Y0 Z0.3 F1800 E25\nG92 A0 B0\n";
+    for (int n = 1; n <= 6; ++n) text += fmt::format("G1 X{} Y{} Z0.3 F600 A{}\n", 10 * (n % 2), n, 0.5 * n);
+    const Toolpath toolpath = readProgram(text);
+    EXPECT_EQ(toolpath.slicer, "Miracle Grue 3.9.4");
+    EXPECT_NEAR(toolpath.filament_mm, 28, 1e-6);
+    EXPECT_GE(toolpath.beads.size(), 5U);
+}
+
+// ReplicatorG's calibration of nozzles: each line begins with a wipe, which draws back, and E climbs all the same.
+TEST(WorldFiles, EThatFallsInWipesAndClimbsIsAbsolute) {
+    std::string text;
+    double e = 0;
+    for (int n = 0; n < 20; ++n, e += 3.5)
+        text += fmt::format("G1 X-70 Y{0} Z0.6 E{1}\nG1 E{2}\nG1 X-110 Y{0} Z0.6 E{3}\n", 10 * n, e, e + 0.3, e + 4);
+    EXPECT_NEAR(readProgram(text).filament_mm, 70, 1);  // relative, it would be 900
+}
+
+// Klipper's changers of tools: the offset behind "T1" is where that nozzle is.
+TEST(WorldFiles, AnOffsetBehindAChangeOfToolMovesNoPart) {
+    const std::string first = "M83\nT0\nG1 Z0.3\nG1 X20 E1\nG1 Z0.5\nG1 X0 E1\n";
+    const Toolpath toolpath = readProgram(first + "T1\nSET_GCODE_OFFSET X=-0.6 Z=-1.5 MOVE=1\nG1 X20 E1\n");
+    EXPECT_EQ(toolpath.beads.back().z1, 0.5);
+    EXPECT_EQ(toolpath.beads.back().x1, 20);
+    // At any other place it moves the print.
+    EXPECT_EQ(readProgram(first + "SET_GCODE_OFFSET Z=0.1 MOVE=1\nG1 X20 E1\n").beads.back().z1, 0.6);
+}
+
+// Of Cura's start programs: a name that nobody replaced, behind a number.
+TEST(WorldFiles, ANameBehindANumberIsLeftOut) {
+    const Toolpath toolpath = readProgram("M83\nG1 X0.4 Y200 Z0.3\nG1 X0.4 Y20 Z0.3[first_layer_height] F1500 E10\n");
+    EXPECT_EQ(toolpath.beads.size(), 1U);
+    EXPECT_EQ(toolpath.beads.front().y1, 20);
+    EXPECT_EQ(toolpath.warnings.size(), 1U) << toolpath.warnings.back().text;
+}
+
+// What is for OctoPrint, a condition that no slicer replaced, and what RepRapFirmware counts.
+TEST(WorldFiles, OtherLanguagesAreNoMacros) {
+    const Toolpath toolpath = readProgram(
+        "M83\nG1 Z0.3\n@Object part\nG1 X20 E1\n@Objectstop part\nset global.layer = 2\nG1 X0 E1\n"
+        "{if layer_z == 0.8}M104 S220{endif};\nG1 X20 E1\n");
+    EXPECT_EQ(toolpath.beads.size(), 3U);
+    ASSERT_EQ(toolpath.warnings.size(), 1U);
+    EXPECT_EQ(toolpath.warnings.front().text, "characters that are no G-code words; they are ignored");
+    EXPECT_EQ(readProgram("M83\nG1 Z0.3\nG1 X20 E1\n_PARK_IT\n").warnings.front().text,
+              "macro _PARK_IT is not in the file; what it prints or moves is not in the toolpath");
+}
+
+// A thread high above the bed hangs at the nozzle, not halfway down.
+TEST(WorldFiles, ThinBeadsInTheAirAreRound) {
+    const Toolpath toolpath = readProgram("M83\nG1 X0 Y0 Z100\nG1 X50 E0.2\n");
+    const double height = static_cast<double>(toolpath.runOf(toolpath.beads.front()).height);
+    EXPECT_NEAR(height, std::sqrt(4 / std::numbers::pi * 0.2 * std::numbers::pi / 4 * 1.75 * 1.75 / 50), 1e-4);
 }
 
 // Of each bead.
