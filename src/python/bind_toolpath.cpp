@@ -1,4 +1,5 @@
 #include "python/arrays.h"
+#include "python/bare_objects.h"
 #include "python/errors.h"
 #include "python/long_call.h"
 #include "python/make_toolpath.h"
@@ -289,20 +290,33 @@ void addFacts(py::class_<ToolpathObject>& type) {
         .def(
             "summary", [](const ToolpathObject& self) { return inPython(gcode::summarize(*self.toolpath)); },
             documented("summary(self)", "What the file holds, in lines of text.").c_str())
-        .def(py::pickle(
-            [](const ToolpathObject& self) {
-                std::string state;
-                {
-                    const py::gil_scoped_release release;
-                    state = stateOf(self);
-                }
-                return py::bytes(state);
+        .def("__getstate__",
+             [](const ToolpathObject& self) {
+                 std::string state;
+                 {
+                     const py::gil_scoped_release release;
+                     state = stateOf(self);
+                 }
+                 return py::bytes(state);
+             })
+        .def(
+            kBeginEmpty,
+            [](py::detail::value_and_holder& value) {
+                value.value_ptr() = new ToolpathObject{.toolpath = std::make_shared<const gcode::Toolpath>()};
             },
-            [](const py::bytes& state) {
-                const auto bytes = static_cast<std::string_view>(state);
-                const py::gil_scoped_release release;
-                return toolpathOf(bytes);
-            }))
+            py::detail::is_new_style_constructor())
+        .def("__setstate__",
+             [](ToolpathObject& self, const py::bytes& state) {
+                 if (!self.toolpath->empty() || !self.source.empty())
+                     throw py::type_error("__setstate__(): a Toolpath never changes");
+                 const auto bytes = static_cast<std::string_view>(state);
+                 ToolpathObject read;
+                 {
+                     const py::gil_scoped_release release;
+                     read = toolpathOf(bytes);
+                 }
+                 self = std::move(read);
+             })
         .def("__len__", [](const ToolpathObject& self) { return self.toolpath->beads.size(); })
         .def("__repr__", [](const ToolpathObject& self) {
             return fmt::format("<stratum.Toolpath: {} in {}>", counted(self.toolpath->beads.size(), "bead"),

@@ -1,4 +1,5 @@
 // The Python module stratum._stratum: the package stratum takes everything from it.
+#include "python/bare_objects.h"
 #include "python/bindings.h"
 #include "python/errors.h"
 #include "python/level_set_object.h"
@@ -26,4 +27,5 @@ PYBIND11_MODULE(_stratum, module) {
     bindIntersector(module);
     bindPicture(module);
     bindThreads(module);
+    refuseBareObjects(module);
 }

@@ -92,6 +92,9 @@ bpy.context.object.location.x += 100
 result["moved"] = measure(bpy.context.object)["min"][0]
 clear()
 result["volume"] = run(**same, kind="VOLUME", grids="layer"), sorted(g.name for g in bpy.context.object.data.grids)
+# With that volume still active.
+result["after_volume"] = run(**same), [slot.material.node_tree.nodes[0].type
+                                       for slot in bpy.context.object.material_slots]
 
 # --- as it comes ------------------------------------------------------------------------------------------------------
 clear(empty=False)

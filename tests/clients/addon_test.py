@@ -87,6 +87,8 @@ check(result["orange"][0] > 1500 and result["orange"][1] == 0,
       f"the camera that was aimed sees all of it: {result['orange'][0]} of {160 * 120} pixels, {result['orange'][1]} at the edges")
 check(json.loads(result["remembered"])["aim"] is True, "the settings are remembered")
 check(result["limited"][0] == "FINISHED" and result["limited"][1] < 75000, f"at most about 60000 faces: {result['limited'][1]}")
+check(result["limited"][1] > 30000, f"and no fewer than half of them: {result['limited'][1]}")
+check(result["after_volume"] == ["FINISHED", ["BSDF_PRINCIPLED"]], f"a mesh while a volume is active: {result['after_volume']}")
 check(result["scene_unit"][0] == "FINISHED" and all(abs(a) < 0.03 for a in result["scene_unit"][1][0])
       and abs(result["scene_unit"][1][1][0] - exact[0]) < 0.04, f"in the scene's unit, from the corner: {result['scene_unit'][1]}")
 check(result["names"] == {"part.v2.gcode": "part.v2", "a.b.c.gcode.3mf": "a.b.c", "noise.gz": "noise", "x.GCODE": "x"},

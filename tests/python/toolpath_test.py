@@ -328,6 +328,21 @@ class Pickles(unittest.TestCase):
             empty.__setstate__(other + zlib.crc32(other).to_bytes(4, "little"))
         empty.__setstate__(state)
         self.same(toolpath, empty)
+        with self.assertRaisesRegex(TypeError, "never changes"):
+            empty.__setstate__(state)
+
+    def test_objects_without_a_value(self):
+        """Their values were read from memory that nobody had written: a crash."""
+        empty = stratum.Toolpath.__new__(stratum.Toolpath)
+        self.assertEqual((len(empty), empty.travels, empty.times, empty.source), (0, None, None, ""))
+        self.assertEqual(repr(empty), "<stratum.Toolpath: 0 beads in 0 layers>")
+        for one in (stratum.Picture, stratum.LevelSet, stratum.PrintField, stratum.Intersector):
+            with self.assertRaises(TypeError):
+                one.__new__(one)
+        with self.assertRaisesRegex(TypeError, "No constructor defined"):
+            stratum.Picture.__new__(stratum.Picture, 1)
+        with self.assertRaises(TypeError):
+            stratum.Toolpath()
 
 
 class Errors(unittest.TestCase):

@@ -236,8 +236,8 @@ void correctByPlace(const Toolpath& toolpath, std::span<const double> run_z, std
 }
 
 // Bridging threads and ironing are round in any layer, and so is what hangs high above the bed with nothing between:
-// their height follows from their own area.
-void roundByArea(const Toolpath& toolpath, std::span<const double> run_z, std::vector<double>& heights) {
+// their height follows from their own area. `in_air`: whether the latter is done.
+void roundByArea(const Toolpath& toolpath, std::span<const double> run_z, bool in_air, std::vector<double>& heights) {
     constexpr double kHigh = 2;  // diameters
     std::vector<double> area(toolpath.runs.size());
     std::vector<double> length(toolpath.runs.size());
@@ -253,7 +253,7 @@ void roundByArea(const Toolpath& toolpath, std::span<const double> run_z, std::v
         if (run.feature == Feature::bridge) heights[k] = std::max(heights[k], std::min(diameter, kMostBridge));
         if (run.feature == Feature::ironing && heights[k] >= kLeastHeight)
             heights[k] = std::clamp(diameter, kLeastHeight, heights[k]);
-        if (run.layer > 0 && heights[k] == run_z[k] && heights[k] > std::max(kHigh * diameter, kMostRise))
+        if (in_air && run.layer > 0 && heights[k] == run_z[k] && heights[k] > std::max(kHigh * diameter, kMostRise))
             heights[k] = std::max(diameter, kLeastHeight);
     }
 }
@@ -316,7 +316,7 @@ std::vector<double> findHeights(Toolpath& toolpath, std::span<const double> run_
         correctByPlace(toolpath, run_z, nominal, first_level, heights);
         if (!nominal) recountSpiral(toolpath, run_z, heights);
     }
-    roundByArea(toolpath, run_z, heights);
+    roundByArea(toolpath, run_z, !nominal, heights);
 
     std::vector<std::uint32_t> lines(count);
     for (auto bead = toolpath.beads.rbegin(); bead != toolpath.beads.rend(); ++bead)

@@ -26,7 +26,13 @@ def new_material(name, color):
     """A plastic of an sRGB color."""
     material = bpy.data.materials.new(name)
     material.use_nodes = True
-    shader = next(node for node in material.node_tree.nodes if node.type == "BSDF_PRINCIPLED")
+    # Blender's own first nodes are those of a volume while an object of that kind is active.
+    nodes = material.node_tree.nodes
+    nodes.clear()
+    shader = nodes.new("ShaderNodeBsdfPrincipled")
+    output = nodes.new("ShaderNodeOutputMaterial")
+    shader.location.x, output.location.x = -300, 0
+    material.node_tree.links.new(shader.outputs["BSDF"], output.inputs["Surface"])
     shader.inputs["Base Color"].default_value = (*linear(color), 1)
     shader.inputs["Roughness"].default_value = 0.35
     material.diffuse_color = (*linear(color), 1)

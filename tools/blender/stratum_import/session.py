@@ -26,7 +26,6 @@ class Session:
         self._conversion = None
         self._path = ""
         self._trying = False  # a coarse level set first, which tells how fine the voxels may be, and the colors
-        self._voxels = 0
         self._colored = False
         self._start = 0.0
         self.shown = []  # one object a print, the last of a sequence
@@ -66,7 +65,7 @@ class Session:
         self._convert(self._settings.trial_options() if self._trying else self._settings.command_options())
 
     def _convert(self, options):
-        ending = ".ply" if self._settings.kind == "MESH" and not self._trying else ".vdb"
+        ending = ".ply" if self._settings.kind == "MESH" or self._trying else ".vdb"
         try:
             self._conversion = Conversion(self._converter, self._path, print_name(self._path) + ending, options)
         except ConversionError as error:
@@ -78,9 +77,9 @@ class Session:
             report = conversion.result()
             if self._trying:
                 self._trying = False
-                self._voxels = report["files"][0]["active_voxels"]
                 self._colored = self._settings.kind == "MESH" and len(set(tool_colors(report).values())) > 1
-                self._convert(self._settings.command_options(self._voxels, self._colored))
+                faces = report["files"][0]["mesh"]["triangles"]
+                self._convert(self._settings.command_options(faces, self._colored))
             else:
                 self._take(report)
         except FAILURES as error:

@@ -9,8 +9,8 @@ from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, St
 
 ENDINGS = (".gz", ".gcode", ".gco", ".g", ".bgcode", ".3mf", ".ufp", ".gx")
 MOST_VOXELS_PER_LAYER = 4
-# Active voxels of the trial, times the square of the voxels a layer: 2 to 5 a face for the prints in data/gcode.
-VOXELS_PER_FACE = 3
+# One voxel a layer tells little of how many faces finer ones have.
+TRIAL_VOXELS_PER_LAYER = 2
 PER_MM = {"MM": 1.0, "CM": 0.1, "M": 0.001}
 
 
@@ -71,15 +71,15 @@ class ImportSettings:
         return self.kind != "VOLUME" and self.voxel_size == 0 and not self.memory_budget
 
     def trial_options(self):
-        """For the coarsest level set, of the whole print."""
-        return ["--voxels-per-layer", "1", "--grids=surface", *self._selection_options()]
+        """For a coarse mesh of the whole print."""
+        return ["--voxels-per-layer", str(TRIAL_VOXELS_PER_LAYER), *self._selection_options()]
 
     def wants_trial(self):
         """A mesh asks also for how many colors there are."""
         return self.kind == "MESH" or self.follows_faces()
 
-    def command_options(self, trial_voxels=0, colored=False):
-        """`trial_voxels` are the active ones of trial_options(), if wants_trial(). A `colored` mesh has colors."""
+    def command_options(self, trial_faces=0, colored=False):
+        """`trial_faces` are those of trial_options(), if wants_trial(). A `colored` mesh has colors."""
         options = [*self._selection_options(), "--origin", self.origin]
         if self.kind != "MESH" and self.grids:
             options.append(f"--grids={self.grids}")
@@ -90,8 +90,8 @@ class ImportSettings:
         elif self.memory_budget:
             options += ["--memory-budget", self.memory_budget]
         elif self.follows_faces():
-            # Both grow by the square of the voxels a layer.
-            most = math.isqrt(int(VOXELS_PER_FACE * self.faces / max(trial_voxels, 1)))
+            # Those of curved surfaces grow by the square of the voxels a layer; flat ones need fewer.
+            most = int(TRIAL_VOXELS_PER_LAYER * math.sqrt(self.faces / max(trial_faces, 1)))
             options += ["--voxels-per-layer", str(min(max(most, 1), MOST_VOXELS_PER_LAYER))]
         if self.snapshots > 1:
             steps = (f"{100 * n / self.snapshots:.4g}%" for n in range(1, self.snapshots))
