@@ -26,7 +26,6 @@ constexpr Names<march::BrickValues, 2> kBrickValues = {
 
 void readFilm(OptionSource& options, PictureRequest& request) {
     shade::RenderOptions& render = request.render;
-    constexpr int kMost = std::numeric_limits<int>::max();
     if (const auto size = options.integersOf("size", 2, "the width and the height in pixels, e.g. 1280x960", 'x');
         !size.empty()) {
         render.width = size[0];
@@ -51,7 +50,7 @@ void readFilm(OptionSource& options, PictureRequest& request) {
         integrator.name = *name;
         if (!options.flag("denoise") && !shade::canDenoise(integrator)) request.denoise.reset();
     }
-    assign(integrator.bounces, options.integer("bounces", 1, kMost));
+    assign(integrator.bounces, options.integer("bounces", 1, 64));
     assign(integrator.exact_translucency, options.flag("exact_translucency"));
     assign(integrator.ao_distance, options.number("ao_distance"));
     if (const auto v = options.numbersOf("phong", {5}, "five numbers: ka, kd, ks, shininess, kr"); !v.empty())
@@ -74,6 +73,7 @@ void readCamera(OptionSource& options, PictureRequest& request) {
     assign(camera.fov, options.number("fov"));
     const auto f_number = options.number("f_number");
     const auto aperture = options.number("aperture");
+    if (f_number == 0.0) options.refuse("f_number", "a number above 0, e.g. 2.8");
     if (f_number || aperture) {
         camera.f_number = f_number.value_or(0);
         camera.aperture = aperture.value_or(0);

@@ -13,7 +13,10 @@
 #include <algorithm>
 #include <array>
 #include <initializer_list>
+#include <set>
+#include <string>
 #include <utility>
+#include <vector>
 
 namespace stratum::assemble {
 namespace {
@@ -128,7 +131,16 @@ Json parseScene(const InputFile& input, const std::string& name) {
         throw InputError(fmt::format("{}: has {} bytes; a scene has at most {}", name, input.bytes().size(), kMost));
     try {
         // Comments are allowed: people explain their scenes.
-        return Json::parse(input.bytes(), nullptr, true, true);
+        // The keys of each object that is open. The parser keeps the last of two, and would not say so.
+        std::vector<std::set<std::string>> keys;
+        const auto refuseTwice = [&](int, Json::parse_event_t event, Json& value) {
+            if (event == Json::parse_event_t::object_start) keys.emplace_back();
+            if (event == Json::parse_event_t::object_end) keys.pop_back();
+            if (event == Json::parse_event_t::key && !keys.back().insert(value.get<std::string>()).second)
+                throw InputError(fmt::format("{}: {} is there twice; keep one", name, value.get<std::string>()));
+            return true;
+        };
+        return Json::parse(input.bytes(), refuseTwice, true, true);
     } catch (const Json::exception& error) {
         throw InputError(fmt::format("{}: {}", name, error.what()));
     }
@@ -187,8 +199,11 @@ SceneFile readSceneFile(const std::filesystem::path& path) {
     file.scene.brdf = materialBeside(folder, file.scene.brdf);
     if (!shade::isEnvironmentPreset(file.scene.env)) file.scene.env = beside(folder, file.scene.env);
     if (camera)
-        if (auto photograph = camera->section("photograph"))
+        if (auto photograph = camera->section("photograph")) {
+            if (file.scene.camera.eye || file.scene.camera.look_at || file.scene.camera.up)
+                camera->fail("photograph", "no eye, look_at or up beside it, since it tells where the camera is");
             readPhotograph(std::move(*photograph), file.scene.camera, file.notes);
+        }
     for (const JsonSection* section : {&top, there(camera), there(environment), there(integrator)})
         if (section != nullptr) section->finish();
     return file;

@@ -1,5 +1,4 @@
 #include "python/arrays.h"
-#include "python/bare_objects.h"
 #include "python/errors.h"
 #include "python/long_call.h"
 #include "python/make_toolpath.h"
@@ -23,6 +22,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <typeinfo>
 #include <utility>
 #include <vector>
 
@@ -299,29 +299,37 @@ void addFacts(py::class_<ToolpathObject>& type) {
                  }
                  return py::bytes(state);
              })
-        .def(
-            kBeginEmpty,
-            [](py::detail::value_and_holder& value) {
-                value.value_ptr() = new ToolpathObject{.toolpath = std::make_shared<const gcode::Toolpath>()};
-            },
-            py::detail::is_new_style_constructor())
-        .def("__setstate__",
-             [](ToolpathObject& self, const py::bytes& state) {
-                 if (!self.toolpath->empty() || !self.source.empty())
-                     throw py::type_error("__setstate__(): a Toolpath never changes");
-                 const auto bytes = static_cast<std::string_view>(state);
-                 ToolpathObject read;
-                 {
-                     const py::gil_scoped_release release;
-                     read = toolpathOf(bytes);
-                 }
-                 self = std::move(read);
-             })
         .def("__len__", [](const ToolpathObject& self) { return self.toolpath->beads.size(); })
         .def("__repr__", [](const ToolpathObject& self) {
             return fmt::format("<stratum.Toolpath: {} in {}>", counted(self.toolpath->beads.size(), "bead"),
                                counted(self.toolpath->layer_count, "layer"));
         });
+}
+
+// pickle makes an empty one first, and then sets its state. Not by py::pickle(), whose objects have no value until
+// then.
+void addState(py::class_<ToolpathObject>& type) {
+    const auto make = [make_room = py::object(type.attr("__new__"))](const py::object& of) {
+        py::object object = make_room(of);
+        auto* const instance = reinterpret_cast<py::detail::instance*>(object.ptr());
+        auto value = instance->get_value_and_holder(py::detail::get_type_info(typeid(ToolpathObject)));
+        value.value_ptr() = new ToolpathObject{.toolpath = std::make_shared<const gcode::Toolpath>()};
+        value.type->init_instance(instance, nullptr);
+        return object;
+    };
+    type.attr("__new__") = py::staticmethod(py::cpp_function(make));
+    const auto set = [](ToolpathObject& self, const py::bytes& state) {
+        if (!self.toolpath->empty() || !self.source.empty())
+            throw py::type_error("__setstate__(): a Toolpath never changes");
+        const auto bytes = static_cast<std::string_view>(state);
+        ToolpathObject read;
+        {
+            const py::gil_scoped_release release;
+            read = toolpathOf(bytes);
+        }
+        self = std::move(read);
+    };
+    type.attr("__setstate__") = py::cpp_function(set, py::is_method(type));
 }
 
 }  // namespace
@@ -332,6 +340,7 @@ void bindToolpath(py::module_& module) {
                                     "changes; replace() makes another.");
     addArrays(type);
     addFacts(type);
+    addState(type);
     voxelize::PrintOptions print;
     const std::string selection = parametersOf([&](Keywords& options) { assemble::readSelection(options, print); });
     type.def("select", &selectBeads,

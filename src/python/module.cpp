@@ -1,5 +1,4 @@
 // The Python module stratum._stratum: the package stratum takes everything from it.
-#include "python/bare_objects.h"
 #include "python/bindings.h"
 #include "python/errors.h"
 #include "python/level_set_object.h"
@@ -8,8 +7,45 @@
 
 #include "base/atomic_file.h"
 
+#include <fmt/format.h>
 #include <openvdb/openvdb.h>
 #include <pybind11/pybind11.h>
+
+#include <string>
+
+namespace {
+
+namespace py = pybind11;
+
+std::string nameOf(const py::handle& type) { return type.attr("__name__").cast<std::string>(); }
+
+// Of objects without a value, as X.__new__(X) and copying make them, pybind11 would read memory that nobody has
+// written. Refuses them for all classes of the module but those that give them one.
+void refuseBareObjects(const py::module_& module) {
+    for (const auto& [name, type] : module.attr("__dict__").cast<py::dict>()) {
+        if (PyType_Check(type.ptr()) == 0) continue;
+        if (py::detail::get_type_info(reinterpret_cast<PyTypeObject*>(type.ptr())) == nullptr)
+            continue;  // an exception
+        const py::object own = type.attr("__dict__");
+        if (own.contains("__new__")) continue;
+        py::cpp_function make;
+        // Python gives the others a slot of that name.
+        if (own.contains("__init__") && PyInstanceMethod_Check(own["__init__"].ptr()))
+            make = [make_room = py::object(type.attr("__new__"))](const py::object& of, const py::args& values,
+                                                                  const py::kwargs& named) {
+                if (values.empty() && named.empty()) throw py::type_error(nameOf(of) + "(): expected arguments");
+                return make_room(of);  // __init__ comes next
+            };
+        else
+            make = [](const py::object& of, const py::args&, const py::kwargs&) -> py::object {
+                throw py::type_error(
+                    fmt::format("{}: No constructor defined! Functions of stratum make such objects.", nameOf(of)));
+            };
+        type.attr("__new__") = py::staticmethod(make);
+    }
+}
+
+}  // namespace
 
 PYBIND11_MODULE(_stratum, module) {
     using namespace stratum::python;

@@ -186,10 +186,11 @@ private:
             open += row.open;
             closed += row.closed;
         }
-        // Values between samples close narrow gaps: the level set holds a little more than the beads.
-        const double enclosed = (sums.volume + open + closed) * cell;
+        // Values between samples close narrow gaps, so that the level set holds a little more than the beads; of walls
+        // thinner than a few voxels it holds less.
         const double plastic = voxelize::solidVolume(toolpath_, stack, std::numeric_limits<std::uint32_t>::max());
-        const double pores = std::max(enclosed - plastic, 0.0);
+        const double enclosed = std::max((sums.volume + open + closed) * cell, plastic);
+        const double pores = enclosed - plastic;
         const double airtight = std::min(closed * cell, pores);
         add("plastic_volume", plastic);
         plastic_ = plastic;

@@ -85,6 +85,10 @@ TEST(SceneFile, SaysWhatIsWrong) {
     refused(R"({"print": "p.vdb", "spp": -3})", "spp: expected a whole number");
     refused(R"({"print": "p.vdb", "spp": 1e99})", "spp");
     refused(R"({"print": "p.vdb", "bed": 1})", "bed: expected true or false");
+    refused(R"({"print": "p.vdb", "spp": 1, "print": "q.vdb"})", "print is there twice");
+    refused(R"({"print": "p.vdb", "camera": {"f_number": 0}})", "camera.f_number: expected a number above 0");
+    refused(R"({"print": "p.vdb", "camera": {"eye": [1, 2, 3], "photograph": {}}})",
+            "camera.photograph: expected no eye");
     refused(R"({"print": "p.vdb", "lights": [1]})", "lights");
     refused(R"({"print": "p.vdb", "denoise": 1})", "denoise: expected true or false");
     refused(R"({"print": "p.vdb", "file_up": "x"})", "file_up: expected one of z, y");

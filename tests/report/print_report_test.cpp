@@ -151,6 +151,13 @@ TEST(PrintReport, VolumeAtFewVoxelsALayer) {
     }
 }
 
+// Of a wall of a few voxels the level set holds less than the plastic, which is within what encloses it.
+TEST(PrintReport, EnclosedIsNoLessThanPlastic) {
+    const PrintReport report = reportOfAll(test::tube(5, 0.4, 0.2, 12), layeredLattice(0.2, 2));
+    EXPECT_GE(numberOf(report, "enclosed_volume"), numberOf(report, "plastic_volume"));
+    EXPECT_EQ(numberOf(report, "porosity"), 0);
+}
+
 TEST(PrintReport, TurnedScaledAndMovedGridsSayTheSame) {
     const gcode::Toolpath path = test::tube(3, 0.6, 0.4, 4);
     const auto beads = allBeads(path);

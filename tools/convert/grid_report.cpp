@@ -109,7 +109,8 @@ std::string doubtOf(double enclosed_mm3, double deposited_mm3, bool culled) {
     return fmt::format("the level set holds {:.3g} cm3, {:.0f} % {} than the {:.3g} cm3 of its beads: {}",
                        enclosed_mm3 * 1e-3, 100 * std::abs(excess), excess < 0 ? "less" : "more", deposited_mm3 * 1e-3,
                        excess < 0 ? "they overlap that much, or are thinner than a voxel"
-                                  : "gaps between them are narrower than a voxel; choose a smaller one");
+                                  : "gaps between them are narrower than a voxel, or their round ends hold more than "
+                                    "was fed, as those of short beads do");
 }
 
 }  // namespace stratum::tools

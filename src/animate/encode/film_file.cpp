@@ -33,7 +33,7 @@ void requireFilm(const std::filesystem::path& path, const FilmFormat& format) {
     if (video && (format.width % 2 != 0 || format.height % 2 != 0))
         throw UsageError(fmt::format(
             "--film {}: {} x {} pixels: films of this kind have even sizes, since their colours are stored for 2 x 2 "
-            "pixels; --size {}x{}, or a .png or .gif",
+            "pixels; --size {}x{} or a --crop of it, or a .png or .gif",
             path.string(), format.width, format.height, format.width + format.width % 2,
             format.height + format.height % 2));
     const int most = kind == FilmKind::gif ? 50 : 240;

@@ -383,10 +383,22 @@ void resolveSections(Toolpath& toolpath, std::span<const double> run_z, std::opt
                      WarningLog& warnings) {
     resolveHeights(toolpath, run_z, nominal_height, warnings);
     splitRamps(toolpath);
+    double cut = 0;  // mm^3
+    std::uint32_t cut_first = 0;
     for (Bead& bead : toolpath.beads) {
         const double height = static_cast<double>(toolpath.runOf(bead).height);
-        bead.width = static_cast<float>(widthOf(toolpath, bead, static_cast<double>(bead.width), height, warnings));
+        const auto area = static_cast<double>(bead.width);
+        const double width = widthOf(toolpath, bead, area, height, warnings);
+        bead.width = static_cast<float>(width);
+        if (width < kMostHeights * height) continue;
+        if (cut == 0) cut_first = toolpath.lineOf(bead);
+        const double length = beadLength(toolpath, bead);
+        const double disc = width > kBlobLengths * length ? std::numbers::pi / 4 * width * width * height : 0;
+        cut += std::max(area * length - std::max(sectionArea(width, height) * length, disc), 0.0);
     }
+    if (cut > 0)
+        warnings.add(fmt::format("{:.4g} mm^3 that were fed are in no bead, since beads were cut; is E damaged?", cut),
+                     cut_first);
     if (!toolpath.cut_short.empty() && !toolpath.empty()) {
         const Bead& last = toolpath.beads.back();
         warnings.add(fmt::format("the program seems to be cut short ({}); its last layer is {}, at z = {:g} mm",

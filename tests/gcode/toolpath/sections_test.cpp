@@ -114,6 +114,9 @@ TEST(Sections, AWidthBeyondReasonIsCutWithItsLine) {
         if (warning.text.find("wider") != std::string::npos) {
             EXPECT_EQ(warning.first_line, 2U);
         }
+    // Of 400 mm of filament, a bead 20 mm wide and 40 mm long holds 160 mm^3 less its rounded sides.
+    const double left = 400 * kFilamentArea - beadVolume(toolpath);
+    EXPECT_EQ(warningCount(toolpath, fmt::format("{:.4g} mm^3 that were fed are in no bead", left)), 1U);
 }
 
 TEST(Sections, ABlobIsADiscOfItsVolume) {
