@@ -165,7 +165,7 @@ private:
         addVolume(sums, stack);
         if (!o_.culled) addBalance(sums);
         addSlabs(stack, sums);
-        addWalls(map, outside.get());
+        addWalls(stack, map, outside.get());
     }
 
     void addVolume(const SolidSums& sums, const voxelize::LayerStack& stack) {
@@ -264,7 +264,7 @@ private:
         return beads;
     }
 
-    void addWalls(const LeafMap& map, const Outside* outside) {
+    void addWalls(const voxelize::LayerStack& stack, const LeafMap& map, const Outside* outside) {
         const std::vector<std::uint32_t> beads = wallBeads();
         if (outside != nullptr) {
             if (const auto wall = findThinnestWall(grid_, toolpath_, beads, lattice_, map, *outside)) {
@@ -277,7 +277,8 @@ private:
                 leaveOut("thinnest_wall", "no bead of the part has the outside beside it", "select more of the print");
             }
         }
-        const std::vector<RoughnessLine> lines = measureRoughness(grid_, toolpath_, beads, lattice_, map, outside);
+        const std::vector<RoughnessLine> lines =
+            measureRoughness(grid_, toolpath_, stack, beads, lattice_, map, outside);
         if (lines.empty()) {
             for (const char* key : {"roughness_ra", "roughness_rz"})
                 leaveOut(key, "no outer wall goes on for a sampling length", "select more layers of the print");

@@ -2,8 +2,10 @@
 
 #include "base/parallel_for.h"
 #include "report/walls/bead_middle.h"
+#include "report/walls/fine_field.h"
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 
 namespace stratum::report {
@@ -11,12 +13,13 @@ namespace {
 
 constexpr int kLengths = 5;         // sampling lengths of a line
 constexpr int kPointsOfLayer = 64;  // of the profile
+constexpr int kVoxelsOfLayer = 32;  // at least
 
 // The profile of a wall: where the surface is along a horizontal direction, height by height.
 class Profile {
 public:
-    Profile(const FieldProbe& probe, const Point& origin, double nx, double ny, double voxel, double most)
-        : probe_(probe), origin_(origin), nx_(nx), ny_(ny), voxel_(voxel), most_(most) {}
+    Profile(FineField& field, const Point& origin, double nx, double ny, double voxel, double most)
+        : field_(field), origin_(origin), nx_(nx), ny_(ny), voxel_(voxel), most_(most) {}
 
     // mm along the direction; from the place found before, or from `at_`.
     std::optional<double> at(double z) {
@@ -41,7 +44,7 @@ public:
 
 private:
     double valueAt(double across, double z) const {
-        return probe_.value({origin_.x + across * nx_, origin_.y + across * ny_, z});
+        return field_.value({origin_.x + across * nx_, origin_.y + across * ny_, z});
     }
     double crossing(double a, double b, double z, bool a_inside) const {
         for (int n = 0; n < 24; ++n) {
@@ -51,7 +54,7 @@ private:
         return 0.5 * (a + b);
     }
 
-    const FieldProbe& probe_;
+    FineField& field_;
     const Point origin_;
     const double nx_, ny_, voxel_, most_;
     double at_ = 0;
@@ -84,8 +87,16 @@ Roughness roughnessOf(std::span<const double> profile) {
     return {sum / count, high - low};
 }
 
+// With planes where those of `lattice` are.
+voxelize::Lattice finerLattice(voxelize::Lattice lattice, double height) {
+    lattice.voxel_size /= std::max(1.0, std::ceil(kVoxelsOfLayer * lattice.voxel_size / height - 1e-6));
+    lattice.half_width = 2;  // points lie between samples
+    return lattice;
+}
+
 std::optional<RoughnessLine> measureLine(const FieldProbe& probe, const gcode::Toolpath& toolpath,
-                                         const gcode::Bead& bead, const voxelize::Lattice& lattice) {
+                                         const voxelize::LayerStack& stack, const gcode::Bead& bead,
+                                         const voxelize::Lattice& lattice) {
     const BeadMiddle middle = middleOf(toolpath, bead);
     const double height = static_cast<double>(toolpath.runOf(bead).height);
     if ((middle.nx == 0 && middle.ny == 0) || !(height > 0)) return std::nullopt;
@@ -97,14 +108,16 @@ std::optional<RoughnessLine> measureLine(const FieldProbe& probe, const gcode::T
         if (sign == 0 && probe.isOutside(p)) sign = way;
     }
     if (sign == 0) return std::nullopt;
-    Profile profile(probe, middle.at, sign * middle.nx, sign * middle.ny, lattice.voxel_size, 2 * side);
     const double length = samplingLength(height);
+    const double bottom = middle.at.z - 0.5 * height;
+    const voxelize::Lattice fine = finerLattice(lattice, height);
+    FineField field(toolpath, stack, fine, bottom, bottom + kLengths * length);
+    Profile profile(field, middle.at, sign * middle.nx, sign * middle.ny, fine.voxel_size, 2 * side);
     const auto layers = static_cast<std::size_t>(std::lround(length / height));
     const std::size_t points = layers * kPointsOfLayer;
     const double step = height / kPointsOfLayer;
     // On the planes between layers too, where the grooves are deepest. Begins at half the bead's height, where the
     // surface is sure to be, and goes down to its bottom first.
-    const double bottom = middle.at.z - 0.5 * height;
     profile.beginAt(side);
     if (!profile.at(middle.at.z)) return std::nullopt;
     for (int n = kPointsOfLayer / 2; n >= 0; --n)
@@ -166,14 +179,15 @@ double samplingLength(double layer_height) {
 }
 
 std::vector<RoughnessLine> measureRoughness(const openvdb::FloatGrid& grid, const gcode::Toolpath& toolpath,
-                                            std::span<const std::uint32_t> selection, const voxelize::Lattice& lattice,
-                                            const LeafMap& map, const Outside* outside) {
+                                            const voxelize::LayerStack& stack, std::span<const std::uint32_t> selection,
+                                            const voxelize::Lattice& lattice, const LeafMap& map,
+                                            const Outside* outside) {
     const std::vector<std::uint32_t> places = placesOf(toolpath, selection);
     std::vector<std::optional<RoughnessLine>> tried(places.size());
     parallelFor(places.size(), 1, [&](std::size_t begin, std::size_t end) {
         const FieldProbe probe(grid, lattice, map, outside);
         for (std::size_t n = begin; n != end; ++n)
-            tried[n] = measureLine(probe, toolpath, toolpath.beads[places[n]], lattice);
+            tried[n] = measureLine(probe, toolpath, stack, toolpath.beads[places[n]], lattice);
     });
     std::vector<RoughnessLine> lines;
     for (const std::optional<RoughnessLine>& line : tried)

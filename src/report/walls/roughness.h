@@ -8,6 +8,7 @@
 
 #include "gcode/toolpath/toolpath.h"
 #include "report/level_set/field_probe.h"
+#include "voxelize/beads/layer_stack.h"
 
 #include <cstdint>
 #include <span>
@@ -29,9 +30,12 @@ constexpr std::size_t kRoughnessLines = 96;
 double samplingLength(double layer_height);
 
 /// Places are even along all outer perimeters of the selection (without such labels: along all beads), and measured if
-/// the outside is beside them. Parallel; the same lines for any number of threads.
+/// the outside is beside them, which `grid` tells; the profile is of a finer one, for in the grooves and on steps of
+/// leaning walls it is the voxels that would be measured. `stack`: of all that is in the grid. Parallel; the same lines
+/// for any number of threads.
 std::vector<RoughnessLine> measureRoughness(const openvdb::FloatGrid& grid, const gcode::Toolpath& toolpath,
-                                            std::span<const std::uint32_t> selection, const voxelize::Lattice& lattice,
-                                            const LeafMap& map, const Outside* outside);
+                                            const voxelize::LayerStack& stack, std::span<const std::uint32_t> selection,
+                                            const voxelize::Lattice& lattice, const LeafMap& map,
+                                            const Outside* outside);
 
 }  // namespace stratum::report

@@ -1,0 +1,93 @@
+#include "report/walls/fine_field.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace stratum::report {
+namespace {
+
+constexpr std::uint32_t kAllBeads = std::numeric_limits<std::uint32_t>::max();
+
+}  // namespace
+
+FineField::FineField(const gcode::Toolpath& toolpath, const voxelize::LayerStack& stack,
+                     const voxelize::Lattice& lattice, double z_min, double z_max)
+    : lattice_(lattice), column_(toolpath, stack, lattice_, 1, voxelize::LeafColumn::Kind::kept) {
+    const voxelize::Footprints footprints = voxelize::columnFootprints(toolpath, lattice_);
+    const double band = 2 * lattice_.background();
+    const auto take = [&](std::uint32_t rank) {
+        const gcode::Bead& bead = toolpath.beads[stack.beads[rank]];
+        ranks_.push_back(rank);
+        columns_.push_back(footprints.range(bead, footprints.limit(bead)));
+    };
+    for (const voxelize::Layer& layer : stack.layers)
+        if (layer.top() + band >= z_min && layer.bottom() - band <= z_max)
+            for (std::uint32_t rank = layer.first; rank < layer.last; ++rank) take(rank);
+    for (std::uint32_t rank = stack.first_direct; rank < stack.beads.size(); ++rank) {
+        const voxelize::Extent& extent = stack.extentOf(rank);
+        if (extent.z_max + band >= z_min && extent.z_min - band <= z_max) take(rank);
+    }
+}
+
+double FineField::value(const Point& p) {
+    const std::array<double, 3> at{p.x / lattice_.voxel_size, p.y / lattice_.voxel_size,
+                                   (p.z - lattice_.origin_z) / lattice_.voxel_size};
+    std::array<int, 3> low{};
+    std::array<double, 3> t{};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        const double below = std::floor(at[axis]);
+        low[axis] = static_cast<int>(below);
+        t[axis] = at[axis] - below;
+    }
+    double sum = 0;
+    for (int corner = 0; corner < 8; ++corner) {
+        const std::array<int, 3> step{corner & 1, corner >> 1 & 1, corner >> 2};
+        double weight = 1;
+        Place place{};
+        std::size_t index = 0;
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            weight *= step[axis] != 0 ? t[axis] : 1 - t[axis];
+            const int sample = low[axis] + step[axis];
+            place[axis] = sample >> 3;
+            index = 8 * index + static_cast<std::size_t>(sample & 7);
+        }
+        sum += weight * static_cast<double>(leafAt(place)[index]);
+    }
+    return sum;
+}
+
+const FineField::Values& FineField::leafAt(const Place& place) {
+    if (last_ != nullptr && place == last_place_) return *last_;
+    const auto [found, added] = leaves_.try_emplace(place);
+    if (added) make(place, found->second);
+    last_place_ = place;
+    last_ = &found->second;
+    return *last_;
+}
+
+void FineField::make(const Place& place, Values& values) {
+    const int i = place[0] * voxelize::kLeafDim;
+    const int j = place[1] * voxelize::kLeafDim;
+    if (!column_.mayEvaluate(i, j, kAllBeads, place[2])) open(i, j);
+    const voxelize::LeafContent content = column_.evaluate(place[2]);
+    if (content == voxelize::LeafContent::surface)
+        voxelize::storeLeaf(column_.planes(), values.data());
+    else
+        values.fill(static_cast<float>(content == voxelize::LeafContent::inside ? -lattice_.background()
+                                                                                : lattice_.background()));
+}
+
+void FineField::open(int i, int j) {
+    open_ranks_.clear();
+    for (std::size_t n = 0; n < ranks_.size(); ++n) {
+        const voxelize::ColumnRange& range = columns_[n];
+        const int column_i = i / voxelize::kLeafDim;
+        const int column_j = j / voxelize::kLeafDim;
+        if (column_i >= range.i0 && column_i <= range.i1 && column_j >= range.j0 && column_j <= range.j1)
+            open_ranks_.push_back(ranks_[n]);
+    }
+    column_.open(i, j, open_ranks_, kAllBeads);
+}
+
+}  // namespace stratum::report
