@@ -220,8 +220,8 @@ private:
                                        kept_.folder().string(), frames, o_.film.frames));
             return;
         }
-        say(o_.common, fmt::format("  {}: {} x {}, {} at {} a second, {:.2f} s in all", o_.film.output, format_.width,
-                                   format_.height, frames, o_.film.rate, total));
+        say(o_.common, fmt::format("  {}: {} x {}, {} at {:.5g} a second, {:.2f} s in all", o_.film.output,
+                                   format_.width, format_.height, frames, o_.film.rate, total));
     }
 
     Json report() const {
@@ -328,7 +328,7 @@ void planFilm(TraceCommand& o) {
         constexpr double kUsual = 8.0;
         film.seconds = film.keys.empty() ? kUsual : animate::durationOf(film.keys);
     }
-    if (film.rate == 0) film.rate = animate::usualRate(kind);
+    film.rate = film.rate == 0 ? animate::usualRate(kind) : animate::ratioOf(film.rate).perSecond();
     constexpr double kMostFrames = 1e6;
     const double frames = std::round(film.seconds * film.rate);
     if (!(frames <= kMostFrames))

@@ -18,15 +18,8 @@ void addFilmOptions(CLI::App& app, FilmCommand& film, assemble::HotEndLook& nozz
     option("--seconds", film.seconds, "S", "How long (default 8, or as long as --camera-path)")
         ->check(CLI::Range(0.0, 86400.0))
         ->each([&film](const std::string&) { film.seconds_given = true; });
-    option("--fps", film.rate, "N", "Frames a second (default 30, of .gif and .png 20)")
-        ->check(CLI::Validator(
-            [](const std::string& text) {
-                const bool whole =
-                    !text.empty() && text.find_first_not_of("0123456789") == text.npos && text.size() < 4;
-                const int rate = whole ? std::stoi(text) : 0;
-                return rate >= 1 && rate <= 240 ? std::string() : "expected a whole number from 1 to 240, not " + text;
-            },
-            ""));
+    option("--fps", film.rate, "N", "Frames a second, also 23.976, 29.97 or 59.94 (default 30, of .gif and .png 20)")
+        ->check(CLI::Range(1.0, 240.0));
     option("--grow", film.grow, "time|filament|layers",
            "G-code: the print grows bead by bead, by the time that it takes to print, by filament, or at a "
            "steady pace upwards, each layer in the same time")

@@ -19,7 +19,7 @@ struct FilmCommand {
     std::string output;    ///< --film; empty: pictures
     double seconds = 0.0;  ///< --seconds
     bool seconds_given = false;
-    int rate = 0;                ///< --fps; 0: not given
+    double rate = 0;             ///< --fps; 0: not given
     std::string grow;            ///< --grow: a name of kGrowths, or empty
     std::optional<double> hold;  ///< --hold
     double ease = 0.0;           ///< --ease, seconds

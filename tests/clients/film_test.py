@@ -77,6 +77,8 @@ for name, rate, codec in (("a.mp4", 30, "h264"), ("a.webm", 30, "vp9"), ("a.gif"
 check(probe("a.mp4")[5] == "yuv420p" and read("a.mp4").find(b"moov") < read("a.mp4").find(b"mdat"), "an .mp4 that starts fast")
 film("b.mp4", "--seconds", "1", "--fps", "12", "--turntable")
 check(probe("b.mp4")[2:4] == (12, 12.0), "--fps and --seconds")
+film("n.mp4", "--seconds", "0.5", "--fps", "29.97", "--turntable")
+check(probe("n.mp4")[2] == 15 and probe("n.mp4")[3] == 29.97, f"29.97 is 30000/1001: {probe('n.mp4')[3]}")
 
 # --- animated PNG: for any number of threads the same, and as the frames are -------------------------------------------------
 stats = film("a.png", "--seconds", "1", "--fps", "8", "--nozzle", "--threads", "1")

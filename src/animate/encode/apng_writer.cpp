@@ -64,8 +64,9 @@ void ApngWriter::writeControl(const Rectangle& at) {
     constexpr char kReplace = 0;  // and is not blended
     std::string data;
     for (const std::uint32_t value : {sequence_++, at.width, at.height, at.x, at.y}) appendBigEndian32(data, value);
-    append16(data, 1);
-    append16(data, static_cast<std::uint32_t>(format_.rate));
+    const FrameRatio ratio = ratioOf(format_.rate);
+    append16(data, static_cast<std::uint32_t>(ratio.seconds));
+    append16(data, static_cast<std::uint32_t>(ratio.frames));
     data.push_back(kLeave);
     data.push_back(kReplace);
     writeChunk("fcTL", data);

@@ -137,9 +137,10 @@ constexpr const char* kOnePalette =
 
 std::vector<std::string> argumentsOf(FilmKind kind, const FilmFormat& format, const std::string& output) {
     std::vector<std::string> words;
+    const FrameRatio ratio = ratioOf(format.rate);
     append(words, {"-hide_banner", "-loglevel", "error", "-y", "-f", "rawvideo", "-pixel_format", "rgb24"});
     const std::vector<std::string> input{"-video_size", fmt::format("{}x{}", format.width, format.height),
-                                         "-framerate",  std::to_string(format.rate),
+                                         "-framerate",  fmt::format("{}/{}", ratio.frames, ratio.seconds),
                                          "-i",          "pipe:0"};
     words.insert(words.end(), input.begin(), input.end());
     switch (kind) {

@@ -9,6 +9,8 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 namespace stratum::animate {
 
 FilmKind filmKindOf(const std::filesystem::path& path) {
@@ -22,6 +24,18 @@ FilmKind filmKindOf(const std::filesystem::path& path) {
 }
 
 int usualRate(FilmKind kind) { return kind == FilmKind::mp4 || kind == FilmKind::webm ? 30 : 20; }
+
+FrameRatio ratioOf(double rate) {
+    constexpr int kSlower = 1001;  // for each 1000 frames
+    constexpr double kWritten = 0.005;
+    for (const int whole : {24, 30, 60}) {
+        const FrameRatio ratio{1000 * whole, kSlower};
+        if (std::abs(rate - ratio.perSecond()) < kWritten) return ratio;
+    }
+    const double whole = std::round(rate);
+    if (std::abs(rate - whole) < kWritten) return {static_cast<int>(whole), 1};
+    return {static_cast<int>(std::round(100 * rate)), 100};
+}
 
 void requireFilm(const std::filesystem::path& path, const FilmFormat& format) {
     const FilmKind kind = filmKindOf(path);
@@ -38,7 +52,7 @@ void requireFilm(const std::filesystem::path& path, const FilmFormat& format) {
             format.height + format.height % 2));
     const int most = kind == FilmKind::gif ? 50 : 240;
     if (format.rate < 1 || format.rate > most)
-        throw UsageError(fmt::format("--fps {}: a film of this kind has 1 to {} frames a second", format.rate, most));
+        throw UsageError(fmt::format("--fps {:g}: a film of this kind has 1 to {} frames a second", format.rate, most));
     if (kind != FilmKind::gif) return;
     // The palette is of all frames, which ffmpeg keeps until it has seen the last one.
     const double bytes = 3.0 * format.width * format.height * static_cast<double>(format.frames);

@@ -20,10 +20,20 @@ FilmKind filmKindOf(const std::filesystem::path& path);
 /// Frames a second, unless others are asked for: 30; 20 of .gif and .png, whose frames are large.
 int usualRate(FilmKind kind);
 
+/// So many frames in so many seconds.
+struct FrameRatio {
+    int frames = 0, seconds = 0;
+    double perSecond() const { return static_cast<double>(frames) / seconds; }
+};
+
+/// Of a rate as people write it: 23.976, 29.97 and 59.94 are 24000, 30000 and 60000 frames in 1001 s (SMPTE ST 12-1);
+/// others have at most two decimals.
+FrameRatio ratioOf(double rate);
+
 struct FilmFormat {
     int width = 0, height = 0;  ///< pixels
     std::size_t frames = 0;     ///< that will be added
-    int rate = 30;              ///< frames a second
+    double rate = 30;           ///< frames a second; see ratioOf()
     int threads = 0;            ///< of ffmpeg; 0: as it likes
     /// Keyword -> text, see shade::Metadata; in an animated PNG.
     std::map<std::string, std::string> metadata;

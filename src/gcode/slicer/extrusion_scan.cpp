@@ -142,7 +142,7 @@ public:
         // Skeinforge's own moves have no E; a purge in the start program may.
         if (bare_on_ && !e_on_ && !mode_) return {.drive = Drive::switched};
         // A prime line in the start program of MakerBot's machines may have E, too.
-        if (ab_moves_ > e_moves_ && !mode_ && !spindle_) return {.drive = Drive::axes_ab};
+        if (ab_moves_ > e_moves_ && !(mode_ && e_) && !spindle_) return {.drive = Drive::axes_ab};
         if (!e_) return {.drive = switch_ ? Drive::switched : Drive::e_word};
         return {.falls_back = changes_.areIncrements(),
                 .mode_follows = mode_follows_,

@@ -5,11 +5,12 @@
 #include <gtest/gtest.h>
 
 #include <string>
+#include <tuple>
 
 namespace stratum::animate {
 namespace {
 
-FilmFormat formatOf(int width, int height, std::size_t frames, int rate) {
+FilmFormat formatOf(int width, int height, std::size_t frames, double rate) {
     FilmFormat format;
     format.width = width;
     format.height = height;
@@ -34,6 +35,21 @@ TEST(FilmFile, ItsKindIsThatOfItsName) {
     EXPECT_EQ(filmKindOf("a.png"), FilmKind::apng);
     EXPECT_EQ(filmKindOf("a.apng"), FilmKind::apng);
     for (const char* name : {"a", "a.avi", "a.jpg", "-"}) EXPECT_THROW((void)filmKindOf(name), UsageError) << name;
+}
+
+TEST(FilmFile, RatesOfTelevisionAreRatios) {
+    for (const auto& [written, frames, seconds] : {std::tuple{23.976, 24000, 1001},
+                                                   {29.97, 30000, 1001},
+                                                   {59.94, 60000, 1001},
+                                                   {24.0, 24, 1},
+                                                   {30.0, 30, 1},
+                                                   {1.0, 1, 1},
+                                                   {240.0, 240, 1},
+                                                   {12.5, 1250, 100}}) {
+        EXPECT_EQ(ratioOf(written).frames, frames) << written;
+        EXPECT_EQ(ratioOf(written).seconds, seconds) << written;
+        EXPECT_NEAR(ratioOf(ratioOf(written).perSecond()).perSecond(), written, 0.005) << written;
+    }
 }
 
 TEST(FilmFile, RefusesWhatItCanNotBe) {
