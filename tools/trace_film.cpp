@@ -331,7 +331,7 @@ void planFilm(TraceCommand& o) {
     film.rate = film.rate == 0 ? animate::usualRate(kind) : animate::ratioOf(film.rate).perSecond();
     constexpr double kMostFrames = 1e6;
     const double frames = std::round(film.seconds * film.rate);
-    if (!(frames <= kMostFrames))
+    if (!(frames >= 0 && frames <= kMostFrames))
         throw UsageError(
             fmt::format("--film {}: has {:.0f} frames; a film has at most {:.0f}", film.output, frames, kMostFrames));
     film.frames = static_cast<std::size_t>(frames);

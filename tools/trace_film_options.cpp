@@ -9,6 +9,12 @@ namespace stratum::tools {
 
 void addFilmOptions(CLI::App& app, FilmCommand& film, assemble::HotEndLook& nozzle) {
     const char* group = "Film";
+    // Ranges let "nan" pass.
+    const CLI::Validator finite(
+        [](const std::string& text) {
+            return text.find_first_of("nN") == text.npos ? std::string() : "expected a number, not " + text;
+        },
+        "");
     const auto option = [&](const char* name, auto& value, const char* type, const char* help) {
         return app.add_option(name, value, help)->type_name(type)->group(group);
     };
@@ -17,20 +23,24 @@ void addFilmOptions(CLI::App& app, FilmCommand& film, assemble::HotEndLook& nozz
            "the print grows, a level set turns, unless --grow, --turntable or --camera-path say otherwise");
     option("--seconds", film.seconds, "S", "How long (default 8, or as long as --camera-path)")
         ->check(CLI::Range(0.0, 86400.0))
+        ->check(finite)
         ->each([&film](const std::string&) { film.seconds_given = true; });
     option("--fps", film.rate, "N", "Frames a second, also 23.976, 29.97 or 59.94 (default 30, of .gif and .png 20)")
-        ->check(CLI::Range(1.0, 240.0));
+        ->check(CLI::Range(1.0, 240.0))
+        ->check(finite);
     option("--grow", film.grow, "time|filament|layers",
            "G-code: the print grows bead by bead, by the time that it takes to print, by filament, or at a "
            "steady pace upwards, each layer in the same time")
         ->check(oneOf(kGrowths));
     option("--hold", film.hold, "S",
            "G-code: how long the finished print is shown at the end (default 1, of films of less than 4 s 0)")
-        ->check(CLI::Range(0.0, 86400.0));
+        ->check(CLI::Range(0.0, 86400.0))
+        ->check(finite);
     option("--ease", film.ease, "S",
            "The print grows, and the camera turns, ever faster during the first S seconds and slower during the "
            "last (default 0: evenly)")
-        ->check(CLI::Range(0.0, 86400.0));
+        ->check(CLI::Range(0.0, 86400.0))
+        ->check(finite);
     option("--camera-path", film.camera_path, "FILE.json",
            "The camera moves smoothly through {\"keys\": [{\"time\": 0, \"eye\": [X,Y,Z], \"look_at\": ..., "
            "\"up\": ..., \"fov\": ...}, ...]}");

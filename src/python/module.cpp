@@ -19,6 +19,12 @@ namespace py = pybind11;
 
 std::string nameOf(const py::handle& type) { return type.attr("__name__").cast<std::string>(); }
 
+// Of a class of the module itself. Python gives those without constructors a slot of that name.
+bool hasInit(const py::handle& type) {
+    const py::object own = type.attr("__dict__");
+    return own.contains("__init__") && PyInstanceMethod_Check(own["__init__"].ptr());
+}
+
 // Of objects without a value, as X.__new__(X) and copying make them, pybind11 would read memory that nobody has
 // written. Refuses them for all classes of the module but those that give them one.
 void refuseBareObjects(const py::module_& module) {
@@ -29,11 +35,12 @@ void refuseBareObjects(const py::module_& module) {
         const py::object own = type.attr("__dict__");
         if (own.contains("__new__")) continue;
         py::cpp_function make;
-        // Python gives the others a slot of that name.
-        if (own.contains("__init__") && PyInstanceMethod_Check(own["__init__"].ptr()))
+        if (hasInit(type))
             make = [make_room = py::object(type.attr("__new__"))](const py::object& of, const py::args& values,
                                                                   const py::kwargs& named) {
-                if (values.empty() && named.empty()) throw py::type_error(nameOf(of) + "(): expected arguments");
+                // A class of a user's may need none.
+                const bool bare = values.empty() && named.empty() && hasInit(of);
+                if (bare) throw py::type_error(nameOf(of) + "(): expected arguments");
                 return make_room(of);  // __init__ comes next
             };
         else

@@ -30,7 +30,7 @@ constexpr std::array kNumbers{
         "Plastic and pores: the outer hull, filled. The outside is what a ball reaches from around the part whose "
         "radius is half the height of a layer (half a voxel if that is more, and at most what the band of the level "
         "set tells), and the grooves that it touches: grooves between layers are outside, gaps too narrow for the "
-        "ball are pores."},
+        "ball are pores. No less than the plastic."},
     Definition{"porosity", kVolume, "Porosity", "%",
                "What of the enclosed volume is not plastic; infill's hollows are pores."},
     Definition{"open_porosity", kVolume, "Open porosity", "%",

@@ -344,6 +344,13 @@ class Pickles(unittest.TestCase):
         with self.assertRaises(TypeError):
             stratum.Toolpath()
 
+    def test_a_users_class(self):
+        class Own(stratum.PrintField):
+            def __init__(self):
+                super().__init__(stratum.read(gcode("tile.gcode")), voxel_size=0.2)
+
+        self.assertEqual(Own().voxel_size, 0.2)
+
 
 class Errors(unittest.TestCase):
     def test_text_that_is_no_utf8(self):

@@ -44,8 +44,8 @@ public:
             }
         std::array<double, 3> value{};
         for (std::size_t c = 0; c < 3; ++c)
-            value[c] =
-                inRange(system[kUnknowns - 1][kUnknowns + c] / system[kUnknowns - 1][kUnknowns - 1], x, y, int(c));
+            value[c] = std::max(least(x, y, int(c)),
+                                system[kUnknowns - 1][kUnknowns + c] / system[kUnknowns - 1][kUnknowns - 1]);
         return value;
     }
 
@@ -67,12 +67,11 @@ private:
     }
     const shade::Color& color(int x, int y) const { return film_.pixels()[index(x, y)].rgb; }
     /// Of the 3 x 3 pixels around.
-    double inRange(double value, int x, int y, int c) const {
-        std::vector<float> near;
+    double least(int x, int y, int c) const {
+        float found = color(x, y)[c];
         for (int dy = -1; dy <= 1; ++dy)
-            for (int dx = -1; dx <= 1; ++dx) near.push_back(color(x + dx, y + dy)[c]);
-        const auto [least, most] = std::minmax_element(near.begin(), near.end());
-        return std::clamp(value, double(*least), double(*most));
+            for (int dx = -1; dx <= 1; ++dx) found = std::min(found, color(x + dx, y + dy)[c]);
+        return double(found);
     }
     double variance(int x, int y) const {
         double sum = 0;

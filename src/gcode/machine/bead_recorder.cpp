@@ -137,7 +137,8 @@ void BeadRecorder::markLayer(const Tag& mark) {
     // One layer, marked once by each process that prints in it, or once by the slicer and once by who asked for it.
     const bool same_z = mark.z && mark_z_ && std::abs(*mark.z - *mark_z_) < kSameZ;
     const bool empty = !mark_.empty() && toolpath_.beads.size() == beads_before_mark_;
-    const bool again = empty && (mark.text != mark_ || marked_twice_);
+    // Before the first layer's beads also the first kind again, whose first mark was in the start program.
+    const bool again = empty && (mark.text != mark_ || (marked_twice_ && next_.layer == 1));
     marked_twice_ = again;
     if (mark.height > 0) tag({.kind = Tag::Kind::height, .height = mark.height}, 0);
     if (again) return;
@@ -190,18 +191,19 @@ void BeadRecorder::finish() {
     next_.layer = 0;
     // A run of a known height goes on from level to level: each layer needs its own.
     const std::vector<Run> before = std::exchange(runs, {});
-    const std::vector<double> z_before = std::exchange(run_z_, {});
+    run_z_.clear();
     std::optional<std::uint32_t> last;
     for (Bead& bead : toolpath_.beads) {
         const Point from{bead.x0, bead.y0, bead.z0};
         const Point to{bead.x1, bead.y1, bead.z1};
         const bool before_mark = marked && before[bead.run].layer == 0;
-        if (!before_mark) countLayer(from, to, std::abs(to.z - from.z) > kSameZ);
+        const bool sloped = std::abs(to.z - from.z) > kSameZ;
+        if (!before_mark) countLayer(from, to, sloped);
         if (last != bead.run || runs.back().layer != next_.layer) {
             last = bead.run;
             runs.push_back(before[bead.run]);
             runs.back().layer = next_.layer;
-            run_z_.push_back(z_before[bead.run]);
+            run_z_.push_back(sloped ? std::numeric_limits<double>::quiet_NaN() : to.z);
         }
         bead.run = static_cast<std::uint32_t>(runs.size() - 1);
     }

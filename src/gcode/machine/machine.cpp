@@ -313,7 +313,7 @@ void Machine::changeMakerBotTool(double number) {
 
 void Machine::useTool(std::size_t tool) {
     if (moves_ != nullptr) moves_->changeTool(tool_, tool, line_);
-    if (tool != tool_) beads_at_tool_ = recorder_.toolpath().beads.size();
+    beads_at_tool_ = recorder_.toolpath().beads.size();
     tool_ = tool;
     recorder_.setTool(static_cast<std::uint8_t>(tool));
     // PrusaSlicer and its derivatives subtract a nozzle's offset from the coordinates. Offsets that the firmware

@@ -198,7 +198,7 @@ private:
     // subtracted, and G92 holds in all of them (GPX, gpx.c).
     bool makerbot_ = false;
     std::size_t tool_ = 0;
-    std::size_t beads_at_tool_ = 0;  // when it was changed
+    std::size_t beads_at_tool_ = 0;  // when it was chosen
     Mixer mixer_;
     double feed_ = 0;
     double move_seconds_ = 60;  // of a move under G93

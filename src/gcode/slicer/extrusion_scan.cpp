@@ -43,8 +43,8 @@ public:
     bool areIncrements() const {
         // Absolute E climbs all the same, where each line begins with a wipe.
         const bool climbs = net_ > 0.5 * gross_;
-        return pairs_ >= kFewestPairs && !climbs &&
-               (falls_ * kFallsInChanges > rises_ + falls_ || rises_ * kPairsInRises <= pairs_);
+        const bool falls = falls_ * kFallsInChanges > rises_ + falls_ && !climbs;
+        return pairs_ >= kFewestPairs && (falls || rises_ * kPairsInRises <= pairs_);
     }
     // Some number is not above the one before, and none shows a retraction as absolute E writes it: back to less, in
     // place, where an increment would push out.
@@ -142,7 +142,9 @@ public:
         // Skeinforge's own moves have no E; a purge in the start program may.
         if (bare_on_ && !e_on_ && !mode_) return {.drive = Drive::switched};
         // A prime line in the start program of MakerBot's machines may have E, too.
-        if (ab_moves_ > e_moves_ && !(mode_ && e_) && !spindle_) return {.drive = Drive::axes_ab};
+        constexpr std::size_t kMostPrimes = 10;
+        if (ab_moves_ > e_moves_ && e_moves_ < kMostPrimes && !(mode_ && e_) && !spindle_)
+            return {.drive = Drive::axes_ab};
         if (!e_) return {.drive = switch_ ? Drive::switched : Drive::e_word};
         return {.falls_back = changes_.areIncrements(),
                 .mode_follows = mode_follows_,

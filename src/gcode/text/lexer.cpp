@@ -118,8 +118,8 @@ private:
     // Of what begins with '@' for the host, which keeps it from the printer (OctoPrint), "@pause" stops the print.
     bool isPause() const {
         constexpr std::string_view kPause = "@PAUSE";
-        return std::equal(kPause.begin(), kPause.end(), p_, std::min(p_ + kPause.size(), end_),
-                          [](char a, char b) { return a == upper(b); });
+        return end_ - p_ >= std::ssize(kPause) &&
+               std::equal(kPause.begin(), kPause.end(), p_, [](char a, char b) { return a == upper(b); });
     }
 
     // "X10,5": a comma between the digits of a word of a command.
@@ -168,7 +168,7 @@ private:
         if (parseNumber(next, end_, value)) {
             command_->set(letter, value);
             p_ = next;
-            if (p_ != end_ && *p_ == '[') {  // "Z0.3[first_layer_height]": its letters are no words
+            if (p_ != end_ && (*p_ == '[' || *p_ == '{')) {  // "Z0.3[first_layer_height]": its letters are no words
                 line_.unreadable = true;
                 p_ = behindBraces(p_);
             }

@@ -253,7 +253,7 @@ void roundByArea(const Toolpath& toolpath, std::span<const double> run_z, bool i
         if (run.feature == Feature::bridge) heights[k] = std::max(heights[k], std::min(diameter, kMostBridge));
         if (run.feature == Feature::ironing && heights[k] >= kLeastHeight)
             heights[k] = std::clamp(diameter, kLeastHeight, heights[k]);
-        if (in_air && run.layer > 0 && heights[k] == run_z[k] && heights[k] > std::max(kHigh * diameter, kMostRise))
+        if (in_air && run.layer > 0 && !std::isnan(run_z[k]) && heights[k] > std::max(kHigh * diameter, kMostRise))
             heights[k] = std::max(diameter, kLeastHeight);
     }
 }
@@ -391,10 +391,12 @@ void resolveSections(Toolpath& toolpath, std::span<const double> run_z, std::opt
         const double width = widthOf(toolpath, bead, area, height, warnings);
         bead.width = static_cast<float>(width);
         if (width < kMostHeights * height) continue;
-        if (cut == 0) cut_first = toolpath.lineOf(bead);
         const double length = beadLength(toolpath, bead);
         const double disc = width > kBlobLengths * length ? std::numbers::pi / 4 * width * width * height : 0;
-        cut += std::max(area * length - std::max(sectionArea(width, height) * length, disc), 0.0);
+        const double left = area * length - std::max(sectionArea(width, height) * length, disc);
+        if (!(left > 1e-6 * area * length)) continue;
+        if (cut == 0) cut_first = toolpath.lineOf(bead);
+        cut += left;
     }
     if (cut > 0)
         warnings.add(fmt::format("{:.4g} mm^3 that were fed are in no bead, since beads were cut; is E damaged?", cut),

@@ -12,25 +12,34 @@ constexpr std::uint32_t kAllBeads = std::numeric_limits<std::uint32_t>::max();
 }  // namespace
 
 FineField::FineField(const gcode::Toolpath& toolpath, const voxelize::LayerStack& stack,
-                     const voxelize::Lattice& lattice, double z_min, double z_max)
-    : lattice_(lattice), column_(toolpath, stack, lattice_, 1, voxelize::LeafColumn::Kind::kept) {
+                     const voxelize::Lattice& lattice, const Part& part)
+    : lattice_(lattice), part_(part), column_(toolpath, stack, lattice_, 1, voxelize::LeafColumn::Kind::kept) {
     const voxelize::Footprints footprints = voxelize::columnFootprints(toolpath, lattice_);
     const double band = 2 * lattice_.background();
+    const auto isNear = [&](const gcode::Bead& bead) {
+        if (bead.arc >= 0) return true;  // its box is not that of its ends
+        // Of a line, with its width, and what settling moves.
+        const double most = part.reach + 2 * static_cast<double>(bead.width) + band;
+        return std::min(bead.x0, bead.x1) - most <= part.x && std::max(bead.x0, bead.x1) + most >= part.x &&
+               std::min(bead.y0, bead.y1) - most <= part.y && std::max(bead.y0, bead.y1) + most >= part.y;
+    };
     const auto take = [&](std::uint32_t rank) {
         const gcode::Bead& bead = toolpath.beads[stack.beads[rank]];
+        if (!isNear(bead)) return;
         ranks_.push_back(rank);
         columns_.push_back(footprints.range(bead, footprints.limit(bead)));
     };
     for (const voxelize::Layer& layer : stack.layers)
-        if (layer.top() + band >= z_min && layer.bottom() - band <= z_max)
+        if (layer.top() + band >= part.z_min && layer.bottom() - band <= part.z_max)
             for (std::uint32_t rank = layer.first; rank < layer.last; ++rank) take(rank);
     for (std::uint32_t rank = stack.first_direct; rank < stack.beads.size(); ++rank) {
         const voxelize::Extent& extent = stack.extentOf(rank);
-        if (extent.z_max + band >= z_min && extent.z_min - band <= z_max) take(rank);
+        if (extent.z_max + band >= part.z_min && extent.z_min - band <= part.z_max) take(rank);
     }
 }
 
 double FineField::value(const Point& p) {
+    if (std::hypot(p.x - part_.x, p.y - part_.y) > part_.reach) return lattice_.background();
     const std::array<double, 3> at{p.x / lattice_.voxel_size, p.y / lattice_.voxel_size,
                                    (p.z - lattice_.origin_z) / lattice_.voxel_size};
     std::array<int, 3> low{};
@@ -79,15 +88,16 @@ void FineField::make(const Place& place, Values& values) {
 }
 
 void FineField::open(int i, int j) {
-    open_ranks_.clear();
-    for (std::size_t n = 0; n < ranks_.size(); ++n) {
-        const voxelize::ColumnRange& range = columns_[n];
-        const int column_i = i / voxelize::kLeafDim;
-        const int column_j = j / voxelize::kLeafDim;
-        if (column_i >= range.i0 && column_i <= range.i1 && column_j >= range.j0 && column_j <= range.j1)
-            open_ranks_.push_back(ranks_[n]);
-    }
-    column_.open(i, j, open_ranks_, kAllBeads);
+    const int column_i = i / voxelize::kLeafDim;
+    const int column_j = j / voxelize::kLeafDim;
+    const auto [found, added] = ranks_of_.try_emplace({column_i, column_j});
+    if (added)
+        for (std::size_t n = 0; n < ranks_.size(); ++n) {
+            const voxelize::ColumnRange& range = columns_[n];
+            if (column_i >= range.i0 && column_i <= range.i1 && column_j >= range.j0 && column_j <= range.j1)
+                found->second.push_back(ranks_[n]);
+        }
+    column_.open(i, j, found->second, kAllBeads);
 }
 
 }  // namespace stratum::report

@@ -9,6 +9,7 @@
 #include <array>
 #include <cstdint>
 #include <map>
+#include <utility>
 #include <vector>
 
 namespace stratum::report {
@@ -16,13 +17,16 @@ namespace stratum::report {
 /// One thread's, for one line. All it refers to must outlive it.
 class FineField {
 public:
-    /// Of the beads that are near any height between `z_min` and `z_max` (mm).
+    /// What is within `reach` (mm) of the middle in the plan, and between these heights.
+    struct Part {
+        double x = 0, y = 0, reach = 0, z_min = 0, z_max = 0;
+    };
     FineField(const gcode::Toolpath& toolpath, const voxelize::LayerStack& stack, const voxelize::Lattice& lattice,
-              double z_min, double z_max);
+              const Part& part);
     FineField(const FineField&) = delete;
     FineField& operator=(const FineField&) = delete;
 
-    /// Of the trilinear field, mm; negative inside. Only between those heights.
+    /// Of the trilinear field, mm; negative inside. As of the outside beyond the reach. Only between those heights.
     double value(const Point& p);
 
 private:
@@ -34,10 +38,11 @@ private:
     void open(int i, int j);
 
     const voxelize::Lattice lattice_;
+    const Part part_;
     voxelize::LeafColumn column_;
-    std::vector<std::uint32_t> ranks_;            // of the beads, ascending
-    std::vector<voxelize::ColumnRange> columns_;  // of each, where it may be
-    std::vector<std::uint32_t> open_ranks_;
+    std::vector<std::uint32_t> ranks_;                                    // of the beads, ascending
+    std::vector<voxelize::ColumnRange> columns_;                          // of each, where it may be
+    std::map<std::pair<int, int>, std::vector<std::uint32_t>> ranks_of_;  // by column
     std::map<Place, Values> leaves_;
     Place last_place_{};
     const Values* last_ = nullptr;

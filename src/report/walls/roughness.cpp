@@ -11,9 +11,10 @@
 namespace stratum::report {
 namespace {
 
-constexpr int kLengths = 5;         // sampling lengths of a line
-constexpr int kPointsOfLayer = 64;  // of the profile
-constexpr int kVoxelsOfLayer = 32;  // at least
+constexpr int kLengths = 5;            // sampling lengths of a line
+constexpr int kPointsOfLayer = 64;     // of the profile
+constexpr int kVoxelsOfLayer = 32;     // at least
+constexpr double kLeastHeight = 0.01;  // mm; finer voxels could not be indexed on a large bed
 
 // The profile of a wall: where the surface is along a horizontal direction, height by height.
 class Profile {
@@ -99,7 +100,7 @@ std::optional<RoughnessLine> measureLine(const FieldProbe& probe, const gcode::T
                                          const voxelize::Lattice& lattice) {
     const BeadMiddle middle = middleOf(toolpath, bead);
     const double height = static_cast<double>(toolpath.runOf(bead).height);
-    if ((middle.nx == 0 && middle.ny == 0) || !(height > 0)) return std::nullopt;
+    if ((middle.nx == 0 && middle.ny == 0) || !(height >= kLeastHeight)) return std::nullopt;
     const double side = 0.5 * static_cast<double>(bead.width);
     const double beside = side + lattice.voxel_size;
     double sign = 0;
@@ -111,7 +112,10 @@ std::optional<RoughnessLine> measureLine(const FieldProbe& probe, const gcode::T
     const double length = samplingLength(height);
     const double bottom = middle.at.z - 0.5 * height;
     const voxelize::Lattice fine = finerLattice(lattice, height);
-    FineField field(toolpath, stack, fine, bottom, bottom + kLengths * length);
+    // A wall that leans by more than 76 degrees leaves the part that is measured: then the line is shorter.
+    const double highest = kLengths * length;
+    FineField field(toolpath, stack, fine,
+                    {middle.at.x, middle.at.y, 4 * highest + 2 * side, bottom, bottom + highest});
     Profile profile(field, middle.at, sign * middle.nx, sign * middle.ny, fine.voxel_size, 2 * side);
     const auto layers = static_cast<std::size_t>(std::lround(length / height));
     const std::size_t points = layers * kPointsOfLayer;

@@ -22,7 +22,7 @@ void addDenoisingGuides(RenderOptions& options);
 /// compared as those of the picture with a bed.
 ///
 /// Each pixel is the value of a linear function of position, Aov::shading and albedo, fitted by weighted least squares
-/// to the pixels around it, and kept between the least and the most of the 3 x 3 pixels. The weights decrease with the
+/// to the pixels around it, and no less than the least of the 3 x 3 pixels. The weights decrease with the
 /// difference in color of the patches around two pixels, beyond the difference that their variance explains, so that
 /// shadows keep their edges; and with differences in normals, albedo and depth. Layer lines are in the guides, so the
 /// fit keeps them. Unlike the render itself this is biased: it blurs details that neither guides nor colors

@@ -197,22 +197,18 @@ HWY_INLINE void solve(const V* matrix, const V* right, V* values) {
 }
 
 /// A linear function may leave the range of what is around: one very bright neighbour among few of a kind turns it, and
-/// it is far from all of them at the pixel itself. Values stay between those of the 3 x 3 pixels, which noise spreads
-/// wider than the fit's own error.
+/// it falls far below all of them at the pixel itself. Values are no less than the least of the 3 x 3 pixels, below
+/// which a mean of theirs is not. Not so from above: of sparse light most pixels, and all of these, may have less than
+/// the mean.
 template <std::size_t kChannels>
-HWY_INLINE void keepInRange(const DenoisePlanes& in, int x, int y, V* values) {
+HWY_INLINE void keepAboveLeast(const DenoisePlanes& in, int x, int y, V* values) {
     const F f;
     for (std::size_t c = 0; c < kChannels; ++c) {
         const int plane = DenoisePlanes::color + static_cast<int>(c);
         V least = hn::LoadU(f, in.at(plane, x, y));
-        V most = least;
         for (int dy = -1; dy <= 1; ++dy)
-            for (int dx = -1; dx <= 1; ++dx) {
-                const V near = hn::LoadU(f, in.at(plane, x + dx, y + dy));
-                least = hn::Min(least, near);
-                most = hn::Max(most, near);
-            }
-        values[c] = hn::Min(hn::Max(values[c], least), most);
+            for (int dx = -1; dx <= 1; ++dx) least = hn::Min(least, hn::LoadU(f, in.at(plane, x + dx, y + dy)));
+        values[c] = hn::Max(values[c], least);
     }
 }
 
@@ -230,7 +226,7 @@ HWY_INLINE void fit(const DenoisePlanes& in, int x0, int y0, DenoiseScratch& scr
             sumMatrix(in, x0 + static_cast<int>(x), y0 + static_cast<int>(y), weights, matrix);
             sumRight<kChannels>(in, x0 + static_cast<int>(x), y0 + static_cast<int>(y), weights, right);
             solve<kChannels>(matrix, right, values);
-            keepInRange<kChannels>(in, x0 + static_cast<int>(x), y0 + static_cast<int>(y), values);
+            keepAboveLeast<kChannels>(in, x0 + static_cast<int>(x), y0 + static_cast<int>(y), values);
             for (std::size_t c = 0; c < kChannels; ++c) hn::StoreU(values[c], f, &scratch.colors[c][y * kWidth + x]);
         }
 }

@@ -7,6 +7,7 @@
 #include "study/geometry/handmade.h"
 #include "study/geometry/surface_error.h"
 #include "study/print.h"
+#include "voxelize/beads/layer_stack.h"
 #include "voxelize/grid/exterior.h"
 #include "voxelize/grid/voxelizer.h"
 
@@ -58,9 +59,11 @@ Row roughnessOf(const Wall& wall, int per_layer) {
     const report::LeafMap map(*grid);
     const report::Outside outside(map, report::hullClearance(lattice), lattice.voxel_size,
                                   static_cast<double>(grid->background()));
+    const voxelize::LayerStack stack = voxelize::stackLayers(toolpath, beads);
     std::vector<double> ra;
     double rz = 0;
-    for (const report::RoughnessLine& line : report::measureRoughness(*grid, toolpath, beads, lattice, map, &outside)) {
+    for (const report::RoughnessLine& line :
+         report::measureRoughness(*grid, toolpath, stack, beads, lattice, map, &outside)) {
         ra.push_back(line.ra * 1e3);
         rz += line.rz * 1e3;
     }

@@ -54,7 +54,8 @@ double settlingScale(const gcode::Toolpath& toolpath) {
     double lowest = std::numeric_limits<double>::infinity();
     for (const gcode::Run& run : toolpath.runs)
         if (run.height > 0) lowest = std::min(lowest, static_cast<double>(run.height));
-    return std::isfinite(lowest) ? std::max(lowest / kUsual, 1.0) : 1;
+    constexpr double kRounding = 1e-6;  // heights are floats
+    return std::isfinite(lowest) && lowest > kUsual * (1 + kRounding) ? lowest / kUsual : 1;
 }
 
 }  // namespace stratum::voxelize

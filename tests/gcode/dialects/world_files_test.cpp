@@ -240,6 +240,11 @@ TEST(WorldFiles, TwoKindsOfMarksAreOneLayer) {
     const Toolpath toolpath = readProgram(text);
     EXPECT_EQ(toolpath.layer_count, 4U);
     EXPECT_EQ(toolpath.runOf(toolpath.beads.front()).layer, 1U);
+    // A layer that is empty counts, as its numbers say.
+    const Toolpath gap = readProgram(
+        "M83\n;LAYER_CHANGE\n;Z:0.2\n;LAYER:1\nG1 Z0.2\nG1 X20 E1\n;LAYER_CHANGE\n;Z:0.4\n;LAYER:2\n"
+        ";LAYER_CHANGE\n;Z:0.6\n;LAYER:3\nG1 Z0.6\nG1 X0 E1\n");
+    EXPECT_EQ(gap.layer_count, 3U);
 }
 
 // MakerWare's programs that others changed: E in the start program, A in the print.
@@ -259,6 +264,11 @@ TEST(WorldFiles, EThatFallsInWipesAndClimbsIsAbsolute) {
     for (int n = 0; n < 20; ++n, e += 3.5)
         text += fmt::format("G1 X-70 Y{0} Z0.6 E{1}\nG1 E{2}\nG1 X-110 Y{0} Z0.6 E{3}\n", 10 * n, e, e + 0.3, e + 4);
     EXPECT_NEAR(readProgram(text).filament_mm, 70, 1);  // relative, it would be 900
+    // Increments that step up once climb, too.
+    text.clear();
+    for (int n = 0; n < 400; ++n)
+        text += fmt::format("G1 X{} Y{} Z0.3 E{}\n", 10 * (n % 2), n % 90, n < 20 ? 0.3 : 0.5);
+    EXPECT_NEAR(readProgram(text).filament_mm, 20 * 0.3 + 380 * 0.5, 1);
 }
 
 // Klipper's changers of tools: the offset behind "T1" is where that nozzle is.
@@ -295,7 +305,10 @@ TEST(WorldFiles, OtherLanguagesAreNoMacros) {
 TEST(WorldFiles, ThinBeadsInTheAirAreRound) {
     const Toolpath toolpath = readProgram("M83\nG1 X0 Y0 Z100\nG1 X50 E0.2\n");
     const double height = static_cast<double>(toolpath.runOf(toolpath.beads.front()).height);
-    EXPECT_NEAR(height, std::sqrt(4 / std::numbers::pi * 0.2 * std::numbers::pi / 4 * 1.75 * 1.75 / 50), 1e-4);
+    const double round = std::sqrt(4 / std::numbers::pi * 0.2 * std::numbers::pi / 4 * 1.75 * 1.75 / 50);
+    EXPECT_NEAR(height, round, 1e-4);
+    const Toolpath two = readProgram("M83\nG1 X0 Y0 Z50\nG1 X50 E0.2\nG1 Z100\nG1 X0 E0.2\n");
+    EXPECT_NEAR(static_cast<double>(two.runOf(two.beads.back()).height), round, 1e-4);
 }
 
 // Of each bead.

@@ -71,8 +71,9 @@ class ImportSettings:
         return self.kind != "VOLUME" and self.voxel_size == 0 and not self.memory_budget
 
     def trial_options(self):
-        """For a coarse mesh of the whole print."""
-        return ["--voxels-per-layer", str(TRIAL_VOXELS_PER_LAYER), *self._selection_options()]
+        """For a coarse mesh of the whole print; the coarsest, where its faces are not asked for."""
+        voxels = TRIAL_VOXELS_PER_LAYER if self.follows_faces() else 1
+        return ["--voxels-per-layer", str(voxels), *self._selection_options()]
 
     def wants_trial(self):
         """A mesh asks also for how many colors there are."""
