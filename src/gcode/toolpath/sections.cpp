@@ -398,7 +398,8 @@ void resolveSections(Toolpath& toolpath, std::span<const double> run_z, std::opt
         if (cut == 0) cut_first = toolpath.lineOf(bead);
         cut += left;
     }
-    if (cut > 0)
+    constexpr double kWorthSaying = 0.01;
+    if (cut > 0 && cut > kWorthSaying * (cut + beadVolume(toolpath)))
         warnings.add(fmt::format("{:.4g} mm^3 that were fed are in no bead, since beads were cut; is E damaged?", cut),
                      cut_first);
     if (!toolpath.cut_short.empty() && !toolpath.empty()) {
