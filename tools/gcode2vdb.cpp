@@ -42,7 +42,7 @@ constexpr const char* kExamples = R"(
 Examples:
   gcode2vdb part.gcode                        part.vdb, 4 voxels a layer
   gcode2vdb part.gcode -o part.vdb --voxel-size 0.1
-  gcode2vdb part.gcode --voxels-per-layer 4 --features -skirt,-brim,-support
+  gcode2vdb part.gcode --voxels-per-layer 4 --features -skirt,-brim
   gcode2vdb part.gcode -o part.stl                  a closed mesh of the outside; also .ply, .obj
   gcode2vdb part.gcode -o part.glb --faces 50000    for a web page: no more triangles than that
   gcode2vdb part.gcode -o part.3mf --tool 0,1       with a material a tool; also .glb, .usda, .obj --grids color
