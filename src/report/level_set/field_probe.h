@@ -14,6 +14,26 @@ struct Point {
     double x = 0, y = 0, z = 0;  ///< mm, print space
 };
 
+/// The trilinear field at a point; `sample(i, j, k)` is its value there on the lattice.
+template <typename Sample>
+double trilinear(const voxelize::Lattice& lattice, const Point& p, const Sample& sample) {
+    const double at[3] = {p.x / lattice.voxel_size, p.y / lattice.voxel_size,
+                          (p.z - lattice.origin_z) / lattice.voxel_size};
+    const double low[3] = {std::floor(at[0]), std::floor(at[1]), std::floor(at[2])};
+    const int cell[3] = {static_cast<int>(low[0]), static_cast<int>(low[1]), static_cast<int>(low[2])};
+    double sum = 0;
+    for (int corner = 0; corner < 8; ++corner) {
+        const int step[3] = {corner & 1, corner >> 1 & 1, corner >> 2};
+        double weight = 1;
+        for (int axis = 0; axis < 3; ++axis) {
+            const double t = at[axis] - low[axis];
+            weight *= step[axis] != 0 ? t : 1 - t;
+        }
+        sum += weight * static_cast<double>(sample(cell[0] + step[0], cell[1] + step[1], cell[2] + step[2]));
+    }
+    return sum;
+}
+
 /// One thread's. All it refers to must outlive it.
 class FieldProbe {
 public:
@@ -23,21 +43,7 @@ public:
 
     /// Of the trilinear field; negative inside. Its unit is the grid's.
     double value(const Point& p) const {
-        const double at[3] = {p.x / lattice_.voxel_size, p.y / lattice_.voxel_size,
-                              (p.z - lattice_.origin_z) / lattice_.voxel_size};
-        const double low[3] = {std::floor(at[0]), std::floor(at[1]), std::floor(at[2])};
-        const openvdb::Coord cell(static_cast<int>(low[0]), static_cast<int>(low[1]), static_cast<int>(low[2]));
-        double sum = 0;
-        for (int corner = 0; corner < 8; ++corner) {
-            const openvdb::Coord step(corner & 1, corner >> 1 & 1, corner >> 2);
-            double weight = 1;
-            for (int axis = 0; axis < 3; ++axis) {
-                const double t = at[axis] - low[axis];
-                weight *= step[axis] != 0 ? t : 1 - t;
-            }
-            sum += weight * static_cast<double>(tree_.getValue(cell + step));
-        }
-        return sum;
+        return trilinear(lattice_, p, [this](int i, int j, int k) { return tree_.getValue(openvdb::Coord(i, j, k)); });
     }
 
     /// Whether the nearest sample is air that belongs to the outside; of a culled grid, whether it is air.

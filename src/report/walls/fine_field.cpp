@@ -40,30 +40,11 @@ FineField::FineField(const gcode::Toolpath& toolpath, const voxelize::LayerStack
 
 double FineField::value(const Point& p) {
     if (std::hypot(p.x - part_.x, p.y - part_.y) > part_.reach) return lattice_.background();
-    const std::array<double, 3> at{p.x / lattice_.voxel_size, p.y / lattice_.voxel_size,
-                                   (p.z - lattice_.origin_z) / lattice_.voxel_size};
-    std::array<int, 3> low{};
-    std::array<double, 3> t{};
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-        const double below = std::floor(at[axis]);
-        low[axis] = static_cast<int>(below);
-        t[axis] = at[axis] - below;
-    }
-    double sum = 0;
-    for (int corner = 0; corner < 8; ++corner) {
-        const std::array<int, 3> step{corner & 1, corner >> 1 & 1, corner >> 2};
-        double weight = 1;
-        Place place{};
-        std::size_t index = 0;
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-            weight *= step[axis] != 0 ? t[axis] : 1 - t[axis];
-            const int sample = low[axis] + step[axis];
-            place[axis] = sample >> 3;
-            index = 8 * index + static_cast<std::size_t>(sample & 7);
-        }
-        sum += weight * static_cast<double>(leafAt(place)[index]);
-    }
-    return sum;
+    return trilinear(lattice_, p, [this](int i, int j, int k) {
+        const auto within = [](int sample) { return static_cast<std::size_t>(sample & (voxelize::kLeafDim - 1)); };
+        const std::size_t index = voxelize::kLeafDim * (voxelize::kLeafDim * within(i) + within(j)) + within(k);
+        return leafAt({i >> 3, j >> 3, k >> 3})[index];
+    });
 }
 
 const FineField::Values& FineField::leafAt(const Place& place) {
