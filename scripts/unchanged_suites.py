@@ -1,6 +1,6 @@
 """Prints a regular expression for ctest -E: the suites of which nothing changed since a commit, and nothing if there is none.
-Usage: unchanged_suites.py [--rooms] [COMMIT]; without a commit, the one that scripts/checked_commit names. With --rooms the
-rooms of which something changed, instead.
+Usage: unchanged_suites.py [--programs] [COMMIT]; without a commit, the one that scripts/checked_commit names. With
+--programs the test programs of rooms that do run, as a list for CMake's STRATUM_TEST_PROGRAMS, instead; "none" if there is none.
 
 - A room's suites are left out if no file of the room, of the rooms that it includes, or of its tests changed.
 - Programs that take long are left out if nothing changed of what they test: LONG says where that is. All tools are linked
@@ -8,6 +8,7 @@ rooms of which something changed, instead.
 
 Nothing is left out if the commit is unknown here (a shallow clone), or if something changed that all of them share."""
 
+import glob
 import os
 import re
 import subprocess
@@ -99,19 +100,24 @@ def changed_rooms(paths, rooms):
     return found
 
 
+def programs(changed, rooms):
+    """(those to which a change of these rooms can matter, the others): test programs by the names of their suites."""
+    sources = below(rooms)
+    tested = {room for room in rooms if glob.glob(os.path.join(ROOT, "tests", room, "**", "*_test.cpp"), recursive=True)}
+    run, left_out = [], []
+    for program in sorted(tested | FOLDER_OF.keys()):
+        room = FOLDER_OF.get(program, program)
+        used = set().union(*(sources[other] for other in (includes(f"tests/{room}") & rooms) | {room}))
+        (run if used & changed else left_out).append(program)
+    return run, left_out
+
+
 def unchanged(paths, rooms):
     """Patterns of the names of suites."""
     changed = changed_rooms(paths, rooms)
     if changed == rooms:
         return []
-    sources = below(rooms)
-    patterns = []
-    tested = {room for room in rooms if os.path.isdir(os.path.join(ROOT, "tests", room))}
-    for program in sorted(tested | FOLDER_OF.keys()):
-        room = FOLDER_OF.get(program, program)
-        used = set().union(*(sources[other] for other in (includes(f"tests/{room}") & rooms) | {room}))
-        if not used & changed:
-            patterns.append(rf"{program}\..*")
+    patterns = [rf"{program}\..*" for program in programs(changed, rooms)[1]]
     # What the programs of tests/clients import may be of all of them.
     if not any(path.startswith("tests/clients/") and not path.endswith("_test.py") for path in paths):
         patterns += [re.escape(name) for name, places in LONG.items()
@@ -120,11 +126,11 @@ def unchanged(paths, rooms):
     return patterns
 
 
-def main(commit, only_rooms):
+def main(commit, only_programs):
     rooms = {name for name in os.listdir(os.path.join(ROOT, "src")) if os.path.isdir(os.path.join(ROOT, "src", name))}
     paths = changed_since(commit)
-    if only_rooms:
-        print(" ".join(sorted(rooms if paths is None else changed_rooms(paths, rooms))))
+    if only_programs:
+        print(";".join(programs(rooms if paths is None else changed_rooms(paths, rooms), rooms)[0]) or "none")
     elif patterns := unchanged(paths, rooms) if paths is not None else []:
         print(f"Suites of which nothing changed since {commit} are left out: {', '.join(patterns)}", file=sys.stderr)
         print(f"^({'|'.join(patterns)})$")
@@ -132,5 +138,5 @@ def main(commit, only_rooms):
 
 if __name__ == "__main__":
     with open(os.path.join(ROOT, "scripts", "checked_commit"), encoding="utf-8") as checked:
-        given = [word for word in sys.argv[1:] if word != "--rooms"]
-        main(given[0] if given else checked.read().strip(), "--rooms" in sys.argv)
+        given = [word for word in sys.argv[1:] if word != "--programs"]
+        main(given[0] if given else checked.read().strip(), "--programs" in sys.argv)

@@ -43,6 +43,15 @@ for suite, paths, expected in (
 ):
     assert runs(suite, *paths) == expected, f"{suite} after a change of {paths}: expected to run: {expected}"
 
+# The programs that a change can matter to: those whose suites run.
+for paths, expected in (
+    (["src/view/page/page.js"], "view"),
+    (["src/shade/film/png.cpp"], "animate assemble prints shade study view voxelize"),
+    (["README.md"], ""),
+):
+    found = unchanged_suites.programs(unchanged_suites.changed_rooms(paths, ROOMS), ROOMS)[0]
+    assert " ".join(found) == expected, f"programs after a change of {paths}: {found}"
+
 # The table names suites and places that there are.
 with open(os.path.join(ROOT, "tests", "CMakeLists.txt"), encoding="utf-8") as file:
     cmake = file.read()
