@@ -122,6 +122,15 @@ bool readFooter(std::string_view text, Footer& footer) {
         setAt(footer.length, number - 1, text, kLengths);
         return true;
     }
+    for (const std::size_t tool : {0U, 1U})  // Miracle-Grue
+        if (takePrefix(text, tool == 0 ? "Right Toolhead Distance (mm):" : "Left Toolhead Distance (mm):")) {
+            setAt(footer.length, tool, text, kLengths);
+            return true;
+        }
+    if (takePrefix(text, "Estimated Build Volume:")) {  // KISSlicer 1.4 and before, which has no "Ext 1 ="
+        if (footer.length.empty()) setAt(footer.volume, 0, text, kVolumes);
+        return true;
+    }
     if (takePrefix(text, "EXTRUDER_TRAIN.")) {
         const std::size_t tool = takeIndex(text);
         if (tool < kMostTools && takePrefix(text, ".MATERIAL.VOLUME_USED:")) setAt(footer.volume, tool, text, kVolumes);

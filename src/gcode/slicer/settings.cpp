@@ -258,7 +258,7 @@ private:
             settings.slicer = std::string("KISSlicer ").append(upTo(text, " Release"));
         } else if (text.starts_with("<IceSL")) {
             name("IceSL");
-        } else if (takePrefix(text, "nozzle_diameter_mm_0 :")) {  // IceSL
+        } else if (takePrefix(text, "nozzle_diameter_mm_0 :") || takePrefix(text, "Nozzle Size:")) {  // IceSL, LulzBot
             settings.nozzle_diameter = positiveNumber(text, 100);
         } else if (takePrefix(text, "Generated with ") || takePrefix(text, "GCode created with ") ||
                    text.starts_with("BambuStudio ") || text.starts_with("KISSlicer") || text.starts_with("CraftWare")) {
@@ -287,8 +287,8 @@ private:
             settings.relative_e = flag(text);
         } else if (takePrefix(text, "filamentDiameters,") || takePrefix(text, "filamentDiameter,") ||
                    takePrefix(text, "Material Diameter:") || takePrefix(text, "filament_diameter:") ||
-                   takePrefix(text, "filament_diameter_mm_0 :")) {
-            // Simplify3D 4 and 3, Creality Print, BambuStudio's and OrcaSlicer's header, IceSL
+                   takePrefix(text, "filament_diameter_mm_0 :") || takePrefix(text, "Filament Diameter:")) {
+            // Simplify3D 4 and 3, Creality Print, BambuStudio's and OrcaSlicer's header, IceSL, LulzBot's Cura 15
             if (auto list = diameters(text, "|,"); !list.empty()) settings.filament_diameters = std::move(list);
         }
     }

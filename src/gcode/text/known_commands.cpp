@@ -45,6 +45,8 @@ constexpr std::string_view kHarmlessM =
     "650-661 "
     // Creality, Elegoo, Anycubic, Raise3D: lights, cutters, boxes of filament, names of modes
     "729 2000-2012 2202 4010 6211 8200-8233 "
+    // 3DGence: what of the start program is done
+    "3006 3290 "
     // MKS: pictures in a comment; Ultimaker: pauses and calibrations
     "10086 12000-12001";
 

@@ -192,7 +192,8 @@ void StatedReader::pair(std::string_view key, std::string_view value) {
 void StatedReader::sentence(std::string_view key, std::string_view value) {
     if (key == "TIME" || key == "PRINT.TIME" || key == "Print Time" || key == "Print time" || key == "print time" ||
         key == "Build time" || key == "Estimated Build Time" || key == "total estimated time" ||
-        key == "estimated_time(s)" || key == "Estimated Print Time" || key == "Duration") {  // the last: Miracle-Grue
+        key == "estimated_time(s)" || key == "Estimated Print Time" || key == "est. Print time" ||
+        key == "Duration") {  // the last two: FABtotum's Cura 15, Miracle-Grue
         if (const auto time = parseDuration(value)) facts_.seconds = time;
     } else if (key == "TIME_ELAPSED") {
         elapsed_ = parseDuration(value);
@@ -201,15 +202,15 @@ void StatedReader::sentence(std::string_view key, std::string_view value) {
     } else if (key == "total filament weight [g]" || key == "Plastic weight") {
         if (const auto grams = sum(value)) facts_.grams = grams;
     } else if (key == "machine_type" || key == "TARGET_MACHINE.NAME" || key == "Target" || key == "Printer" ||
-               key == "Machine Name") {
+               key == "Machine Name" || key == "MachineType") {  // the last: WEEDO
         if (!value.empty()) facts_.printer = value;
     } else if (key == "Belt Printer" || key == "Bed type") {
         facts_.belt = facts_.belt || value == "1" || value == "belt";
     } else if (key == "Belt Gantry Angle") {
         facts_.belt_angle = positiveNumber(value, 90);
-    } else if (key == "Material Type") {
+    } else if (key == "Material Type" || key == "FilamentType") {
         setMaterial(0, value);
-    } else if (key == "ExtruderParams[0] Nozzle Diameter") {
+    } else if (key == "ExtruderParams[0] Nozzle Diameter" || key == "Nozzle Size") {
         setNozzle(0, value);
     } else if (key == "right_extruder_material" || key == "left_extruder_material") {
         setMaterial(key.starts_with("left") ? 1 : 0, value);

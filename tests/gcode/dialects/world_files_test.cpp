@@ -159,6 +159,32 @@ TEST(WorldFiles, SettingsOfFurtherSlicers) {
         EXPECT_FALSE(parseDuration(text).has_value()) << text;
 }
 
+// MakerWare's are of its two nozzles; KISSlicer up to 1.4 knows the volume of all alone.
+TEST(WorldFiles, FilamentOfMakerWareAndOldKisslicer) {
+    EXPECT_EQ(footerOf({"Right Toolhead Distance (mm): 673.786", "Left Toolhead Distance (mm): 12.5"}).length,
+              (std::vector<double>{673.786, 12.5}));
+    EXPECT_EQ(footerOf({"Left Toolhead Distance (mm): 12.5"}).length, (std::vector<double>{0, 12.5}));
+    EXPECT_EQ(footerOf({"Estimated Build Volume: 7.764 cm^3"}).volume, std::vector<double>{7764});
+    EXPECT_TRUE(footerOf({"Ext 1 =    53.49 mm  (0.378 cm^3)", "Estimated Build Volume: 0.378 cm^3"}).volume.empty());
+}
+
+TEST(WorldFiles, WhatLulzBotsStartProgramSays) {
+    const Settings settings = readSettings(
+        ";This Gcode has been generated specifically for the LulzBot Mini\n;Basic settings: Layer height: 0.25 Walls: "
+        "1 "
+        "Fill: 20\n;Filament Diameter: 2.85\n;Nozzle Size: 0.5\nG26\n");
+    EXPECT_EQ(settings.filament_diameters, std::vector<double>{2.85});
+    EXPECT_EQ(settings.nozzle_diameter, 0.5);
+    EXPECT_EQ(settings.stated.nozzle_diameters, std::vector<double>{0.5});
+}
+
+TEST(WorldFiles, StatementsOfFabtotumAndWeedo) {
+    EXPECT_EQ(readSettings(";est. Print time: 16 minutes\n").stated.seconds, 960);
+    const Settings weedo = readSettings(";MachineType:ENTINA TINA2\n;FilamentType:PLA\n;FilamentUsed:3931.0\n");
+    EXPECT_EQ(weedo.stated.printer, "ENTINA TINA2");
+    EXPECT_EQ(weedo.stated.materials, std::vector<std::string>{"PLA"});
+}
+
 TEST(WorldFiles, OtherProgramsAreToldAsWhatTheyAre) {
     // MakerBot's M6 waits for a tool to be hot.
     EXPECT_EQ(describeTrade("M104 S225 T0\nM6 T0\nG4 P1000\nM101\n"), "");

@@ -29,6 +29,7 @@ TEST(KnownCommands, OfSingleMakers) {
         EXPECT_TRUE(isHarmless('G', code)) << code;
     for (const int code : {108, 132, 137, 322, 650, 729, 863, 1020, 1704, 6211, 7219, 8213, 9140, 9201, 10086, 12001})
         EXPECT_TRUE(isHarmless('M', code)) << code;
+    for (const int code : {3006, 3290}) EXPECT_TRUE(isHarmless('M', code)) << code;  // 3DGence
     for (const auto* name : {"END_PRINT", "set_tmc_current", "SET_GCODE_VARIABLE", "PAUSE"})
         EXPECT_TRUE(isHarmlessMacro(name)) << name;
 }
