@@ -37,14 +37,19 @@ void setDiameter(double diameter, std::string_view reason, Toolpath& toolpath) {
     toolpath.extrusion_rule = fmt::format("mm of filament of {:g} mm ({})", diameter, reason);
 }
 
-// Filament laid before the first layer, in mm. Widths are areas.
+// Filament laid before the first layer, in mm of E. Widths are areas.
 double primeOf(const Toolpath& toolpath, const Machine& machine) {
+    const std::vector<FlowChange>& changes = machine.flowChanges();
+    auto change = changes.begin();
+    double flow = 1;
     double mm = 0;
-    for (const Bead& bead : toolpath.beads) {
+    for (std::size_t n = 0; n < toolpath.beads.size(); ++n) {
+        for (; change != changes.end() && change->first_bead <= n; ++change) flow = change->factor;
+        const Bead& bead = toolpath.beads[n];
         const Run& run = toolpath.runOf(bead);
         if (run.layer == 0)
             mm += static_cast<double>(bead.width) * beadLength(toolpath, bead) /
-                  areaOf(machine.filamentDiameter(run.tool));
+                  (areaOf(machine.filamentDiameter(run.tool)) * flow);
     }
     return mm;
 }

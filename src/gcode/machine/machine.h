@@ -40,6 +40,12 @@ struct MoveCounts {
     std::uint64_t beads = 0;
 };
 
+/// From which bead on which flow (M221, times ReadOptions::flow_percent) made the plastic of its E.
+struct FlowChange {
+    std::size_t first_bead = 0;
+    double factor = 1;
+};
+
 /// Executes lines one after another and hands extruding moves to a BeadRecorder. Print space is Frame's.
 class Machine {
 public:
@@ -64,6 +70,8 @@ public:
     /// mm that were pushed out in place between a slicer's marks of flushing.
     double flushedMm() const { return flushed_; }
     double extrudedMm3() const { return extruded_mm3_; }
+    /// In the order of the beads; 1 before the first.
+    const std::vector<FlowChange>& flowChanges() const { return flow_changes_; }
 
 private:
     // Saved by SAVE_GCODE_STATE.
@@ -204,8 +212,9 @@ private:
     double move_seconds_ = 60;  // of a move under G93
     double speed_factor_ = 1;
     double speed_backup_ = 1;
-    const double all_flow_;                 // ReadOptions::flow_percent as a factor
-    std::array<double, 256> flow_;          // by tool, with all_flow_
+    const double all_flow_;         // ReadOptions::flow_percent as a factor
+    std::array<double, 256> flow_;  // by tool, with all_flow_
+    std::vector<FlowChange> flow_changes_;
     std::array<double, 256> drawn_back_{};  // mm of filament, by tool
     std::array<bool, 256> unloaded_{};
     const bool planar_;

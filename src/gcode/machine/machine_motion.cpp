@@ -422,6 +422,8 @@ void Machine::deposit(const Point& target, const std::optional<Arc>& arc, double
     checkExtraAxes();
     const double flow = flow_[tool_];
     if (!(flow > 0)) return;
+    if (flow != (flow_changes_.empty() ? 1 : flow_changes_.back().factor))
+        flow_changes_.push_back({recorder_.toolpath().beads.size(), flow});
     extruded_mm3_ += volume * flow;
     lay(frame_.position(), target, arc, length, volume * flow);
     if (carriages_.copies() && !simulates_flow_) layCopy(target, arc, length, volume * flow, filament);

@@ -197,6 +197,14 @@ TEST(WorldFiles, CentimetresOfAutodeskTorpedo) {
     EXPECT_NEAR(*settings.stated.layer_height, 0.3, 1e-12);
 }
 
+// CreatWare's prime line has twice the flow; the sum that it states is of E.
+TEST(WorldFiles, APrimeLineWithMoreFlowIsCountedByItsE) {
+    const Toolpath toolpath = readProgram(
+        "M83\nG1 X40 Y0 Z0.4 F200\nM221 S200\nG1 X60 E8\nM221 S100\n;LAYER_CHANGE\nG1 X0 Y9 Z0.2\nG1 X20 E1\n");
+    EXPECT_NEAR(toolpath.prime_mm, 8, 1e-5);
+    EXPECT_NEAR(toolpath.extruded_mm3, 17 * kFilamentArea, 1e-9);
+}
+
 TEST(WorldFiles, OtherProgramsAreToldAsWhatTheyAre) {
     // MakerBot's M6 waits for a tool to be hot.
     EXPECT_EQ(describeTrade("M104 S225 T0\nM6 T0\nG4 P1000\nM101\n"), "");
