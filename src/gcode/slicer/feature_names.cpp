@@ -35,7 +35,7 @@ private:
 // MatterSlice.
 const FeatureNames kFeatureTypes{
     {Feature::perimeter, "perimeter|internal perimeter|inner perimeter|wall inner|wall-inner|inner wall"},
-    {Feature::external_perimeter, "external perimeter|thin wall|wall outer|wall-outer|outer wall"},
+    {Feature::external_perimeter, "external perimeter|thin wall|wall outer|wall-outer|outer wall|outline"},
     {Feature::overhang_perimeter, "overhang perimeter|bridge-wall|overhang|overhang wall"},
     {Feature::infill, "internal infill|infill|fill|sparse infill"},
     {Feature::solid_infill,

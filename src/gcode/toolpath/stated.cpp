@@ -286,6 +286,7 @@ StatedFacts StatedReader::finish() {
     // Written by CuraEngine alone, without Cura to fill in the time that the layers sum up to.
     constexpr double kPlaceholder = 6666;
     if (facts_.seconds == kPlaceholder) facts_.seconds = elapsed_;
+    if (facts_.seconds == 0) facts_.seconds.reset();  // FullControl's head, which is like Cura's
     if (facts_.printer.empty()) facts_.printer = profile_;
     if (!facts_.first_layer_height && first_share_ && facts_.layer_height)
         facts_.first_layer_height = *first_share_ * *facts_.layer_height;

@@ -205,6 +205,9 @@ TEST(WorldFiles, APrimeLineWithMoreFlowIsCountedByItsE) {
     EXPECT_NEAR(toolpath.extruded_mm3, 17 * kFilamentArea, 1e-9);
 }
 
+// FullControl's head.
+TEST(WorldFiles, NoSecondsAreNotStated) { EXPECT_FALSE(readSettings(";TIME:0\n").stated.seconds.has_value()); }
+
 TEST(WorldFiles, OtherProgramsAreToldAsWhatTheyAre) {
     // MakerBot's M6 waits for a tool to be hot.
     EXPECT_EQ(describeTrade("M104 S225 T0\nM6 T0\nG4 P1000\nM101\n"), "");
