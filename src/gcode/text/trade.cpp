@@ -54,7 +54,10 @@ std::string_view placeholderIn(std::string_view line) {
     const auto open = line.find_first_of("{[");
     if (open == std::string_view::npos || open + 1 == line.size() || !isLetter(line[open + 1])) return {};
     const auto close = line.find(line[open] == '{' ? '}' : ']', open);
-    return close == std::string_view::npos ? std::string_view() : line.substr(open, close + 1 - open);
+    if (close == std::string_view::npos) return {};
+    const std::string_view found = line.substr(open, close + 1 - open);
+    return found.find('#') == std::string_view::npos ? found
+                                                     : std::string_view();  // LinuxCNC's "[ABS[#<_h>]]" is a sum
 }
 
 std::string templateIn(std::string_view bytes) {

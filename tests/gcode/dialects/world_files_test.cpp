@@ -209,6 +209,8 @@ TEST(WorldFiles, APrimeLineWithMoreFlowIsCountedByItsE) {
 TEST(WorldFiles, NoSecondsAreNotStated) { EXPECT_FALSE(readSettings(";TIME:0\n").stated.seconds.has_value()); }
 
 TEST(WorldFiles, OtherProgramsAreToldAsWhatTheyAre) {
+    // LinuxCNC's sums stand in brackets.
+    EXPECT_EQ(describeTrade("#<_y>=SQRT[ABS[-#<_h>*#<_h>]]\nG1 X[ABS[#<_y>]]\n").find("template"), std::string::npos);
     // MakerBot's M6 waits for a tool to be hot.
     EXPECT_EQ(describeTrade("M104 S225 T0\nM6 T0\nG4 P1000\nM101\n"), "");
     // A comment of a mill's program is no placeholder of a slicer.
