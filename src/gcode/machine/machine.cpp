@@ -154,10 +154,13 @@ void Machine::flushByItself(std::string_view comment) {
 }
 
 void Machine::warnUnreadable(const Line& line) {
-    warn(line.decimal_comma ? "decimal commas: printers read X10,5 as X10, and so it is read here; slice with a "
-                              "language that writes points, or replace the commas by points"
-                            : "characters that are no G-code words; they are ignored");
+    if (!line.decimal_comma) return warnNoWords();
+    warn(
+        "decimal commas: printers read X10,5 as X10, and so it is read here; slice with a language that writes points, "
+        "or replace the commas by points");
 }
+
+void Machine::warnNoWords() { warn("characters that are no G-code words; they are ignored"); }
 
 void Machine::execute(const Command& command) {
     switch (command.kind) {

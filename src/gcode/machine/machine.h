@@ -111,6 +111,7 @@ private:
     void tellElapsed(std::string_view comment);
     void flushByItself(std::string_view comment);
     void warnUnreadable(const Line& line);
+    void warnNoWords();
     void setHeatOrFan(const Command& command);
     void setHomeOffset(const Command& command);
     void setVolumetric(const Command& command);

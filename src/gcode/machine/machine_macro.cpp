@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <vector>
 
 namespace stratum::gcode {
 namespace {
@@ -66,6 +67,17 @@ bool isStatement(std::string_view name) {
                        [name](std::string_view one) { return same(name, one); });
 }
 
+// Prose that has lost its ';': a macro's arguments have a '='.
+bool isProse(std::string_view text) {
+    if (text.find('=') != std::string_view::npos) return false;
+    constexpr std::size_t kFewest = 2;  // words
+    const auto isWord = [](std::string_view part) {
+        return part.size() > 1 && std::all_of(part.begin(), part.end(), [](char c) { return isLetter(c); });
+    };
+    const std::vector<std::string_view> parts = split(text, ' ');
+    return static_cast<std::size_t>(std::count_if(parts.begin(), parts.end(), isWord)) >= kFewest;
+}
+
 }  // namespace
 
 void Machine::executeMacro(const Command& command) {
@@ -113,6 +125,8 @@ void Machine::executeMacro(const Command& command) {
     } else if (moves_ != nullptr && same(name, "SET_PRESSURE_ADVANCE")) {
         if (const auto advance = numberArgument(command.text, "ADVANCE"))
             moves_->pressureAdvance("SET_PRESSURE_ADVANCE ADVANCE=", *advance, line_);
+    } else if (isProse(command.text) && !isStatement(name)) {
+        warnNoWords();
     } else if (!isHarmlessMacro(name) && !isStatement(name)) {
         warn(fmt::format("macro {} is not in the file; what it prints or moves is not in the toolpath",
                          name.substr(0, 60)));
