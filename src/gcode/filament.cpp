@@ -130,6 +130,7 @@ void chooseFilament(std::optional<double> nozzle, Toolpath& toolpath, WarningLog
     constexpr double kUsualNozzle = 0.4;  // mm, for which the two bounds are
     constexpr double kWidestThin = 0.21;  // mm, of lines of 2.85 mm filament as if of 1.75 mm
     constexpr double kNarrowest = 0.33;   // mm, of lines of 1.75 mm filament
+    constexpr double kWidest = 2.4;       // mm, of lines of a nozzle that nobody states
     constexpr std::size_t kEnough = 100;  // lines, for a choice
     constexpr std::size_t kFewest = 4;    // for a remark
     std::vector<PlainLine> lines_of_print;
@@ -143,13 +144,21 @@ void chooseFilament(std::optional<double> nozzle, Toolpath& toolpath, WarningLog
     if (lines_of_print.size() < kFewest) return;
     const double width = medianByLength(lines_of_print, length);
     const double scale = nozzle.value_or(kUsualNozzle) / kUsualNozzle;
-    if (!(width > 0) || width >= kNarrowest * scale) return;
-    const double ratio = areaOf(kThick) / areaOf(toolpath.filament_diameter);
+    const bool wide = width >= kWidest * scale && lines_of_print.size() >= kEnough;
+    if (!(width > 0) || (width >= kNarrowest * scale && !wide)) return;
+    const double other = wide ? kUsualNozzle * scale : kThick;
+    const double ratio = areaOf(other) / areaOf(toolpath.filament_diameter);
     const std::string lines = fmt::format(
         "the file doesn't say how thick its filament is; of {:g} mm filament its lines hold {:.2f} of what lines as "
         "wide "
         "as a nozzle of {:g} mm do",
         toolpath.filament_diameter, width / (kUsualNozzle * scale), kUsualNozzle * scale);
+    if (wide)
+        return warnings.add(
+            fmt::format("{}; if E counts what comes out of the nozzle, as with firmwares of 2011 and before, say so "
+                        "(--filament-diameter {:g}), for {:.2f} of it",
+                        lines, other, ratio * width / (kUsualNozzle * scale)),
+            1);
     if (width > kWidestThin * scale || lines_of_print.size() < kEnough)
         return warnings.add(fmt::format("{}; if it is {:g} mm, say so (--filament-diameter {:g}), for {:.2f} of it",
                                         lines, kThick, kThick, ratio * width / (kUsualNozzle * scale)),

@@ -205,6 +205,14 @@ TEST(WorldFiles, APrimeLineWithMoreFlowIsCountedByItsE) {
     EXPECT_NEAR(toolpath.extruded_mm3, 17 * kFilamentArea, 1e-9);
 }
 
+// Skeinforge for the first firmwares with an axis E: 1.68 mm of thread for each mm of way.
+TEST(WorldFiles, EOfWhatComesOutOfTheNozzleIsAskedFor) {
+    std::string text = "M83\nG1 Z0.4 F600\n";
+    for (int n = 0; n < 120; ++n) text += fmt::format("G1 X0 Y{0}\nG1 X20 Y{0} E33.6\n", n);
+    EXPECT_EQ(warningCount(readProgram(text), "E counts what comes out of the nozzle"), 1U);
+    EXPECT_EQ(warningCount(readProgram("; filament_diameter = 0.5\n" + text), "E counts"), 0U);
+}
+
 // FullControl's head.
 TEST(WorldFiles, NoSecondsAreNotStated) { EXPECT_FALSE(readSettings(";TIME:0\n").stated.seconds.has_value()); }
 
