@@ -319,7 +319,6 @@ void readPictureOptions(TraceCommand& o, const CLI::App& app) {
         o.objects = std::move(file.objects);
         o.scene_file = path.string();
         o.scene_text = sha256Hex(InputFile(path).bytes());
-        o.notes = std::move(file.notes);
         if (o.output.empty() && o.film.output.empty())
             o.output = file.output.empty() ? path.filename().replace_extension(".png").string() : file.output;
         file.tracing.prints = o.tracing.prints;

@@ -37,7 +37,7 @@ struct ShardCommand {
 /// As the command line and a scene file give it.
 struct TraceCommand : assemble::PictureRequest {
     CommonOptions common;
-    std::vector<std::string> inputs, notes;
+    std::vector<std::string> inputs;
     std::string output, write_brdf, checkpoint;
     bool each = false;
     std::string scene_file;  // or empty

@@ -24,6 +24,52 @@ constexpr Names<bool, 2> kBackgrounds = {{{"scene", false}, {"none", true}}};
 constexpr Names<march::BrickValues, 2> kBrickValues = {
     {{"float", march::BrickValues::Float32}, {"int16", march::BrickValues::Int16}}};
 
+/// An option that leaves nothing for others to say.
+struct Exclusion {
+    std::string_view option;
+    std::array<std::string_view, 5> others;
+    std::string_view why;
+    bool in_scenes = true;  // else a scene may have both, and tells that one of them is not used
+};
+
+constexpr std::array<Exclusion, 4> kExclusions = {
+    {{"color", {"brdf"}, "both are the material; give one of them"},
+     {"color", {"color_by"}, "both are the colour; give one of them"},
+     {"view", {"eye"}, "both say where the camera stands; give one of them", false},
+     {"photograph",
+      {"eye", "look_at", "up", "view", "fov"},
+      "a photograph tells where the camera stands, which way it looks and how much it sees"}}};
+
+// The name alone, without the file and the section in front of it.
+std::string shortName(const OptionSource& options, std::string_view option) {
+    const std::string called = options.called(option);
+    return called.substr(called.find_last_of(" .") + 1);
+}
+
+// What is expected instead of the row's option; empty if none of the others is there.
+std::string expectedBy(const Exclusion& row, const OptionSource& options) {
+    for (const std::string_view other : row.others)
+        if (!other.empty() && options.given(row.option) && options.given(other))
+            return fmt::format("no {} beside it, since {}", shortName(options, other), row.why);
+    return {};
+}
+
+void refuseTogether(const OptionSource& options, bool in_scenes) {
+    for (const Exclusion& row : kExclusions)
+        if (const std::string expected = expectedBy(row, options); row.in_scenes == in_scenes && !expected.empty())
+            options.refuse(row.option, expected);
+}
+
+// Options over a scene take the place of what it says; of a photograph that is only a part.
+void tellOfPhotograph(const OptionSource& options, PictureRequest& request) {
+    if (!request.photograph) return;
+    const Exclusion& row = kExclusions.back();
+    for (const std::string_view other : row.others)
+        if (options.given(other))
+            request.notes.push_back(
+                fmt::format("{} takes the place of what the scene's photograph tells", options.called(other)));
+}
+
 void readFilm(OptionSource& options, PictureRequest& request) {
     shade::RenderOptions& render = request.render;
     if (const auto size = options.integersOf("size", 2, "the width and the height in pixels, e.g. 1280x960", 'x');
@@ -92,11 +138,15 @@ void readMaterial(OptionSource& options, PictureRequest& request) {
     shade::SceneOptions& scene = request.scene;
     const std::optional<std::string> brdf = options.text("brdf");
     const std::string color = fmt::format("{}", fmt::join(options.texts("color"), ","));
-    if (brdf && !color.empty()) options.refuse("color", "brdf or color, since both are the material; give one of them");
     if (brdf || !color.empty()) {
         scene.brdf = brdf.value_or(std::string());
         request.tool_colors.clear();
         request.tracing.finishes.clear();
+    }
+    // A scene's colours by an attribute would hide it.
+    if (!color.empty()) {
+        scene.color_by.clear();
+        scene.color_range.reset();
     }
     if (color.find(',') != std::string::npos) {
         ToolColors tools = toolColorsOf(color, options.called("color"));
@@ -152,6 +202,8 @@ void readTracing(OptionSource& options, PictureRequest& request) {
 }  // namespace
 
 void readPicture(OptionSource& options, PictureRequest& request) {
+    refuseTogether(options, true);
+    tellOfPhotograph(options, request);
     readFilm(options, request);
     readCamera(options, request);
     readMaterial(options, request);
@@ -166,6 +218,13 @@ void refuseUnused(OptionSource& options, const PictureRequest& request) {
     for (const auto& [option, user] : kUsers)
         if (integrator != user && options.given(option))
             options.refuse(option, fmt::format("integrator {}; {} does not use it", user, integrator));
+    refuseTogether(options, false);
+}
+
+void tellOfUnused(const OptionSource& options, PictureRequest& request) {
+    for (const Exclusion& row : kExclusions)
+        if (const std::string expected = expectedBy(row, options); !row.in_scenes && !expected.empty())
+            request.notes.push_back(fmt::format("{} is not used: expected {}", options.called(row.option), expected));
 }
 
 std::optional<std::size_t> brickCacheOf(OptionSource& options) {

@@ -23,6 +23,8 @@ struct PictureRequest : PictureOptions {
     std::string file_up;             ///< of a .vdb: "y", "z", or empty for what the file says
     /// By tool, of prints; empty: as their files state. See ToolColors.
     std::vector<std::optional<gcode::Rgb>> tool_colors;
+    bool photograph = false;         ///< the camera is that of a photograph
+    std::vector<std::string> notes;  ///< what a report must say, e.g. the residual of a solved pose
 
     /// See chooseDenoising().
     /// @param linear  the file keeps linear values
@@ -30,12 +32,16 @@ struct PictureRequest : PictureOptions {
 };
 
 /// Reads what is given over what `request` has already: a command line over a scene file. Names are those of Python.
+/// Refuses options that exclude each other.
 /// Throws what the source throws, UsageError for texts that mean nothing, and InputError.
 void readPicture(OptionSource& options, PictureRequest& request);
 
-/// Refuses what one integrator alone uses where another makes the picture. Of the last source: a scene may have options
-/// of several, for a command line that chooses.
+/// Refuses what one integrator alone uses where another makes the picture, and a view beside an eye. Of the last
+/// source: a scene may have options of several, for a command line that chooses.
 void refuseUnused(OptionSource& options, const PictureRequest& request);
+
+/// Notes a view beside an eye, which a scene may have.
+void tellOfUnused(const OptionSource& options, PictureRequest& request);
 
 /// "brick_cache", bytes.
 std::optional<std::size_t> brickCacheOf(OptionSource& options);

@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
 #include <initializer_list>
 #include <set>
 #include <string>
@@ -84,7 +85,8 @@ private:
         const auto isOneOf = [name](std::initializer_list<std::string_view> names) {
             return std::find(names.begin(), names.end(), name) != names.end();
         };
-        if (isOneOf({"view", "eye", "look_at", "up", "fov", "zoom", "aperture", "f_number", "focus", "frame"}))
+        if (isOneOf({"view", "eye", "look_at", "up", "fov", "zoom", "aperture", "f_number", "focus", "frame",
+                     "photograph"}))
             return {kCamera, name};
         if (isOneOf({"bounces", "phong", "ao_distance", "exact_translucency"})) return {kIntegrator, name};
         return {kTop, name};
@@ -124,22 +126,56 @@ void readPhotograph(JsonSection section, shade::CameraOptions& camera, std::vect
                                 points.size(), pose.rms_pixels, pose.worst_pixels, pose.worst));
 }
 
+// The objects and lists that a parser is in. It keeps the last of two equal keys, and would not say so.
+class OpenPlaces {
+public:
+    /// False for a key that its object has already.
+    bool add(Json::parse_event_t event, const Json& value) {
+        using Event = Json::parse_event_t;
+        if (event == Event::object_end || event == Event::array_end) {
+            places_.pop_back();
+            return true;
+        }
+        if (event == Event::key) {
+            places_.back().key = value.get<std::string>();
+            return places_.back().keys.insert(places_.back().key).second;
+        }
+        if (!places_.empty()) ++places_.back().begun;
+        if (event != Event::value) places_.push_back({event == Event::array_start, 0, {}, {}});
+        return true;
+    }
+
+    /// As JsonSection names places: "objects[2].transform.scale".
+    std::string path() const {
+        std::string path;
+        for (const Place& place : places_)
+            path += place.list ? fmt::format("[{}]", place.begun - 1) : (path.empty() ? "" : ".") + place.key;
+        return path;
+    }
+
+private:
+    struct Place {
+        bool list = false;
+        std::size_t begun = 0;       // elements
+        std::string key;             // the last one of an object
+        std::set<std::string> keys;  // all of them
+    };
+    std::vector<Place> places_;
+};
+
 // The text of a scene; `name` is used in messages.
 Json parseScene(const InputFile& input, const std::string& name) {
     constexpr std::size_t kMost = std::size_t{1} << 24;
     if (input.bytes().size() > kMost)
         throw InputError(fmt::format("{}: has {} bytes; a scene has at most {}", name, input.bytes().size(), kMost));
     try {
-        // Comments are allowed: people explain their scenes.
-        // The keys of each object that is open. The parser keeps the last of two, and would not say so.
-        std::vector<std::set<std::string>> keys;
+        OpenPlaces places;
         const auto refuseTwice = [&](int, Json::parse_event_t event, Json& value) {
-            if (event == Json::parse_event_t::object_start) keys.emplace_back();
-            if (event == Json::parse_event_t::object_end) keys.pop_back();
-            if (event == Json::parse_event_t::key && !keys.back().insert(value.get<std::string>()).second)
-                throw InputError(fmt::format("{}: {} is there twice; keep one", name, value.get<std::string>()));
+            if (!places.add(event, value))
+                throw InputError(fmt::format("{}: {} is there twice; keep one", name, places.path()));
             return true;
         };
+        // Comments are allowed: people explain their scenes.
         return Json::parse(input.bytes(), refuseTwice, true, true);
     } catch (const Json::exception& error) {
         throw InputError(fmt::format("{}: {}", name, error.what()));
@@ -191,6 +227,7 @@ SceneFile readSceneFile(const std::filesystem::path& path) {
     const auto there = [](std::optional<JsonSection>& section) { return section ? &*section : nullptr; };
     SceneOptionSource options(top, there(camera), there(environment), there(integrator));
     readPicture(options, file);
+    tellOfUnused(options, file);
     readShapes(top, folder, name, file);
     top.read("output", file.output);
     std::string checkpoint;
@@ -200,9 +237,8 @@ SceneFile readSceneFile(const std::filesystem::path& path) {
     if (!shade::isEnvironmentPreset(file.scene.env)) file.scene.env = beside(folder, file.scene.env);
     if (camera)
         if (auto photograph = camera->section("photograph")) {
-            if (file.scene.camera.eye || file.scene.camera.look_at || file.scene.camera.up)
-                camera->fail("photograph", "no eye, look_at or up beside it, since it tells where the camera is");
             readPhotograph(std::move(*photograph), file.scene.camera, file.notes);
+            file.photograph = true;
         }
     for (const JsonSection* section : {&top, there(camera), there(environment), there(integrator)})
         if (section != nullptr) section->finish();

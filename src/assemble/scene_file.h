@@ -16,7 +16,6 @@ struct SceneFile : PictureRequest {
     std::string print;                   ///< the level set; empty if there are `objects`
     std::string output;                  ///< empty: named after the scene file; relative to the working directory
     std::vector<ObjectOptions> objects;  ///< empty: `print` alone
-    std::vector<std::string> notes;      ///< what a report must say, e.g. the residual of a solved pose
 };
 
 /// Whether a text looks like a scene: its first character is a brace.

@@ -119,14 +119,24 @@ std::string_view lackOf(const std::string& by, const trace::AttributeSummary& su
     return {};
 }
 
+// Of an object that a scene has among others: messages name it.
+Shape namedSdf(const ObjectOptions& object, std::size_t number, const TracingOptions& options) {
+    try {
+        return shapeOfSdf(object, options);
+    } catch (const UsageError& error) {
+        throw UsageError(fmt::format("objects[{}].sdf: {}", number, error.what()));
+    }
+}
+
 /// Makes each shape once.
 class ShapeReader {
 public:
     ShapeReader(const TracingOptions& options, AttributeNeeds& needs)
         : options_(options), needs_(needs), warnings_(options.events) {}
 
-    const Shape& shapeOf(const ObjectOptions& object, TracedObjects& result) {
-        if (object.sdf) return keep(shapeOfSdf(object, options_), result);
+    /// @param number  of the object in its scene
+    const Shape& shapeOf(const ObjectOptions& object, std::size_t number, TracedObjects& result) {
+        if (object.sdf) return keep(namedSdf(object, number, options_), result);
         auto& known = files_[{object.vdb, object.grid}];
         if (known != nullptr) return *known;
         const bool print = options_.prints.toolpath || !isVdbFile(object.vdb);
@@ -209,7 +219,7 @@ TracedObjects readTracedObjects(const std::vector<ObjectOptions>& objects, const
     bool any_outline = false;
     for (std::size_t n = 0; n < objects.size(); ++n) {
         const ObjectOptions& object = objects[n];
-        const Shape& shape = reader.shapeOf(object, result);
+        const Shape& shape = reader.shapeOf(object, n, result);
         const bool y_up = object.up.empty() ? shape.y_up : object.up == "y";
         scene.push_back({shape.intersector, y_up ? upright(object.placement) : object.placement});
         include(parts, result.outline, shape, scene.back().placement);

@@ -352,7 +352,9 @@ void FileWriter::commit() {
 
 void writeFile(const std::filesystem::path& destination, std::string_view bytes) {
     FileWriter file(destination);
-    file.text(bytes);
+    // In pieces, since the writer copies what it is given.
+    constexpr std::size_t kPiece = std::size_t{1} << 20;
+    for (std::size_t at = 0; at < bytes.size(); at += kPiece) file.text(bytes.substr(at, kPiece));
     file.commit();
 }
 

@@ -36,12 +36,14 @@ void refuseBareObjects(const py::module_& module) {
         if (own.contains("__new__")) continue;
         py::cpp_function make;
         if (hasInit(type))
-            make = [make_room = py::object(type.attr("__new__"))](const py::object& of, const py::args& values,
-                                                                  const py::kwargs& named) {
-                // A class of a user's may need none.
-                const bool bare = values.empty() && named.empty() && hasInit(of);
-                if (bare) throw py::type_error(nameOf(of) + "(): expected arguments");
-                return make_room(of);  // __init__ comes next
+            make = [make_room = py::object(type.attr("__new__")), init = py::object(type.attr("__init__"))](
+                       const py::object& of, const py::args& values, const py::kwargs& named) {
+                // A class of a user's with an __init__ of its own calls this one, with values of its own.
+                if (!py::object(of.attr("__init__")).is(init)) return make_room(of);
+                if (values.empty() && named.empty()) throw py::type_error(nameOf(of) + "(): expected arguments");
+                py::object made = make_room(of);
+                init(made, *values, **named);  // of an object with a value pybind11 ignores the call that comes next
+                return made;
             };
         else
             make = [](const py::object& of, const py::args&, const py::kwargs&) -> py::object {

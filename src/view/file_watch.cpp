@@ -28,11 +28,13 @@ FileWatch::~FileWatch() {
     if (descriptor_ >= 0) close(descriptor_);
 }
 
-// What another file at that path, or other bytes in it, would change; zeros if nothing is there.
+// What another file at that path, or other bytes in it, would change; zeros if nothing is there. Pipes and devices have
+// no size, and are not written and closed as files are: -1 tells them from an empty file.
 FileWatch::Identity FileWatch::identityOf(const std::string& path) {
     struct stat facts {};
     if (stat(path.c_str(), &facts) != 0) return {};
-    return {facts.st_dev, facts.st_ino, facts.st_size, facts.st_mtim.tv_sec, facts.st_mtim.tv_nsec};
+    const bool sized = S_ISREG(facts.st_mode) || S_ISDIR(facts.st_mode);
+    return {facts.st_dev, facts.st_ino, sized ? facts.st_size : -1, facts.st_mtim.tv_sec, facts.st_mtim.tv_nsec};
 }
 
 void FileWatch::watch(const std::string& place, std::uint32_t events, const std::string& name,
@@ -89,9 +91,9 @@ std::set<std::string> FileWatch::changed() {
     for (const std::string& path : touched) {
         arm(path);
         // A file that was made just now is empty until it is written and closed; a link or a folder leads to a whole
-        // one.
+        // one, or to a pipe.
         const Identity now = identityOf(path);
-        const bool there = std::get<2>(now) > 0 && now != files_[path];
+        const bool there = std::get<2>(now) != 0 && now != files_[path];
         if (!written.contains(path) && !there) continue;
         files_[path] = now;
         paths.insert(path);

@@ -75,5 +75,43 @@ TEST(PictureRequest, RefusesWhatMeansNothing) {
     }
 }
 
+TEST(PictureRequest, RefusesWhatExcludesEachOther) {
+    const auto refused = [](const char* text, const char* words) {
+        PictureRequest request;
+        try {
+            const auto json = nlohmann::json::parse(text);
+            const std::string name = "options";
+            JsonSection options(json, "", name);
+            readPicture(options, request);
+            refuseUnused(options, request);
+            ADD_FAILURE() << text;
+        } catch (const InputError& error) {
+            EXPECT_NE(std::string(error.what()).find(words), std::string::npos) << error.what();
+        }
+    };
+    refused(R"({"color": "red", "color_by": "layer"})", "color: expected no color_by beside it");
+    refused(R"({"color": "red", "brdf": "pla-blue"})", "color: expected no brdf beside it");
+    refused(R"({"view": "top", "eye": [1, 2, 3]})", "view: expected no eye beside it");
+    refused(R"({"photograph": {}, "view": "top"})", "photograph: expected no view beside it");
+    refused(R"({"photograph": {}, "fov": 30})", "photograph: expected no fov beside it");
+}
+
+TEST(PictureRequest, AColorTakesThePlaceOfColorsByAnAttribute) {
+    PictureRequest request;
+    read(R"({"color_by": "speed", "color_range": [2, 9]})", request);
+    read(R"({"color": "red"})", request);
+    EXPECT_TRUE(request.scene.color_by.empty());
+    EXPECT_FALSE(request.scene.color_range);
+}
+
+TEST(PictureRequest, TellsWhatTakesThePlaceOfAPhotograph) {
+    PictureRequest request;
+    request.photograph = true;
+    read(R"({"fov": 30, "zoom": 2})", request);
+    ASSERT_EQ(request.notes.size(), 1U);
+    EXPECT_NE(request.notes[0].find("fov takes the place of what the scene's photograph tells"), std::string::npos);
+    EXPECT_EQ(request.scene.camera.fov, 30);
+}
+
 }  // namespace
 }  // namespace stratum::assemble

@@ -43,6 +43,8 @@ TEST(SceneFile, ReadsEveryKey) {
     EXPECT_FALSE(file.scene.bed);
     EXPECT_EQ(file.scene.bed_surface, shade::BedSurface::pei);
     EXPECT_EQ(file.scene.camera.view, shade::View::top);
+    ASSERT_EQ(file.notes.size(), 1u);
+    EXPECT_NE(file.notes[0].find("camera.view is not used: expected no eye beside it"), std::string::npos);
     EXPECT_EQ(file.scene.camera.eye, glm::dvec3(1, 2, 3));
     EXPECT_EQ(file.scene.camera.fov, 40.0);
     EXPECT_EQ(file.scene.env, (scratch / "map.hdr").string());
@@ -86,9 +88,16 @@ TEST(SceneFile, SaysWhatIsWrong) {
     refused(R"({"print": "p.vdb", "spp": 1e99})", "spp");
     refused(R"({"print": "p.vdb", "bed": 1})", "bed: expected true or false");
     refused(R"({"print": "p.vdb", "spp": 1, "print": "q.vdb"})", "print is there twice");
+    refused(R"({"objects": [{"vdb": "p.vdb"}, {"vdb": "q.vdb", "transform": {"scale": 1, "scale": 2}}]})",
+            "objects[1].transform.scale is there twice");
+    refused(R"({"lights": [[1, {}], {"a": [[{}, {"b": 1}], {"c": 1, "c": 2}]}]})", "lights[1].a[1].c is there twice");
     refused(R"({"print": "p.vdb", "camera": {"f_number": 0}})", "camera.f_number: expected a number above 0");
     refused(R"({"print": "p.vdb", "camera": {"eye": [1, 2, 3], "photograph": {}}})",
             "camera.photograph: expected no eye");
+    refused(R"({"print": "p.vdb", "camera": {"fov": 30, "photograph": {}}})", "camera.photograph: expected no fov");
+    refused(R"({"print": "p.vdb", "camera": {"view": "top", "photograph": {}}})",
+            "camera.photograph: expected no view");
+    refused(R"({"print": "p.vdb", "color": "red", "color_by": "layer"})", "color: expected no color_by");
     refused(R"({"print": "p.vdb", "lights": [1]})", "lights");
     refused(R"({"print": "p.vdb", "denoise": 1})", "denoise: expected true or false");
     refused(R"({"print": "p.vdb", "file_up": "x"})", "file_up: expected one of z, y");

@@ -14,8 +14,11 @@
 
 #include <array>
 #include <csignal>
+#include <cstddef>
+#include <filesystem>
 #include <fstream>
 #include <sstream>
+#include <string>
 
 namespace stratum {
 namespace {
@@ -258,6 +261,29 @@ TEST(AtomicFile, AFullDeviceIsAnError) {
     std::ofstream(file.temporary()) << "much";
     EXPECT_THROW(file.commit(), OutputError);
     EXPECT_TRUE(std::filesystem::is_character_file("/dev/full"));
+}
+
+// The most memory that this process has had since it was set back; kilobytes.
+std::size_t peakKilobytes(bool set_back) {
+    if (set_back) std::ofstream("/proc/self/clear_refs") << 5;
+    std::ifstream facts("/proc/self/status");
+    for (std::string line; std::getline(facts, line);)
+        if (line.starts_with("VmHWM:")) return std::stoul(line.substr(6));
+    return 0;
+}
+
+TEST(WriteFile, HoldsNoSecondCopyOfLargeBytes) {
+    const test::ScratchFolder folder;
+    std::string bytes(std::size_t{64} << 20, 'a');
+    bytes.back() = 'z';
+    [[maybe_unused]] const std::size_t before = peakKilobytes(true);
+    writeFile(folder / "out", bytes);
+#ifndef STRATUM_SANITIZED  // which keeps what is freed
+    EXPECT_LT(peakKilobytes(false) - before, std::size_t{32} << 10);
+#endif
+    EXPECT_EQ(slurp(folder / "out"), bytes);
+    writeFile(folder / "empty", "");
+    EXPECT_EQ(std::filesystem::file_size(folder / "empty"), 0U);
 }
 
 TEST(AtomicFile, ADashIsStandardOutput) {

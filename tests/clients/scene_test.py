@@ -135,9 +135,13 @@ trace("reds.png", reds, "--write-brdf", path("reds.binary"))
 trace("asked.png", "tile.vdb", "--brdf", "lambert:0.8,0.1,0.1", "--write-brdf", path("asked.binary"))
 check(bytes_of("reds.binary") == bytes_of("asked.binary"), "the only object's material is written")
 refused(2, "has a colour of its own", "tile.vdb", "--color-by", "tool", "--brdf", "pla-blue")
+refused(2, "--view top: expected no --eye beside it", "tile.vdb", "--view", "top", "--eye", "60,-60,30")
+refused(2, "--color red: expected no --color-by beside it", "tile.vdb", "--color", "red", "--color-by", "layer")
 refused(2, "--focus needs a lens", "tile.vdb", "--focus", "10")
 refused(2, "a scene stands alone", both, "tile.vdb")
 refused(3, "did you mean 'objects'", scene("typo.json", print="tile.vdb", objets=[]))
 refused(3, "in a plane", scene("flat.json", print="tile.vdb", camera={"photograph": {
     "size": [640, 480], "pairs": [[x * 10.0, y * 10.0, x, y, 0] for x in range(3) for y in range(3)]}}))
 refused(2, "endless", scene("endless.json", objects=[{"sdf": {"plane": {"normal": [0, 0, 1]}}}]))
+refused(2, "objects[1].sdf: nothing of a shape 2 x 2 x 2 large is left on voxels of 10", scene("coarse.json", objects=[
+    {"sdf": {"sphere": {"radius": 2}}}, {"sdf": {"sphere": {"center": [3, 3, 3], "radius": 1}}, "voxel_size": 10}]))

@@ -94,6 +94,20 @@ def pipes():
         shutil.copy(gcode("tile.gcode"), path)
         check(told(stream, b'"facts"'), "and shows a file again")
         connection.close()
+    # Of a link that leads to one, too, which nobody writes and closes.
+    link = os.path.join(FOLDER, "link.gcode")
+    os.symlink(path, link)
+    os.mkfifo(pipe)
+    with Server(link, "--voxel-size", "0.2") as server:
+        connection, stream = server.socket()
+        check(told(stream, b'"facts"'), "the print behind a link is read")
+        os.unlink(link)
+        os.symlink(pipe, link)
+        check(told(stream, b"is a pipe"), "the page is told of a link to a pipe")
+        os.unlink(link)
+        os.symlink(path, link)
+        check(told(stream, b'"facts"'), "and shows a file again")
+        connection.close()
 
 
 def empty():

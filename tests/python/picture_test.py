@@ -122,6 +122,8 @@ class Pictures(unittest.TestCase):
         path = gcode("tile.gcode")
         for options, text in (({"size": (0, 10)}, ""), ({"spp": 0}, "spp"), ({"view": "above"}, "iso"),
                               ({"color": "blu", "brdf": "pla-blue"}, "give one"), ({"color": "bluu"}, "CSS"),
+                              ({"color": "blue", "color_by": "layer"}, "expected no color_by beside it"),
+                              ({"view": "top", "eye": (0, 0, 9)}, "expected no eye beside it"),
                               ({"env": "/nowhere.hdr"}, "nowhere"), ({"eye": (0, 0, float("inf"))}, "finite"),
                               ({"march": "sphere"}, "gcode2vdb"), ({"integrator": "pathh"}, "path")):
             with self.assertRaisesRegex((stratum.UsageError, stratum.InputError), text):

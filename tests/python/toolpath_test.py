@@ -341,6 +341,16 @@ class Pickles(unittest.TestCase):
                 one.__new__(one)
         with self.assertRaisesRegex(TypeError, "No constructor defined"):
             stratum.Picture.__new__(stratum.Picture, 1)
+        class Same(stratum.PrintField):
+            pass
+
+        toolpath = stratum.read(gcode("tile.gcode"))
+        for one in (stratum.PrintField, stratum.Intersector, Same):
+            with self.assertRaisesRegex(TypeError, "incompatible constructor arguments|expected a PrintField"):
+                one.__new__(one, 1)
+        for field in (Same(toolpath, voxel_size=0.2), Same.__new__(Same, toolpath, voxel_size=0.2)):
+            self.assertIs(type(field), Same)
+            self.assertEqual(field.voxel_size, 0.2)
         with self.assertRaises(TypeError):
             stratum.Toolpath()
 

@@ -131,6 +131,8 @@ TEST(SdfIntersector, EndlessShapesAreTraced) {
     EXPECT_THROW(march::makeSdfGrid(*sdfPlane({0, 0, 1}, 0), 0.1), UsageError);
     EXPECT_THROW(march::makeSdfGrid(*sdfSphere({0, 0, 0}, 1), 0), UsageError);
     EXPECT_THROW(march::makeSdfGrid(*sdfSphere({0, 0, 0}, 1), 1e-9), UsageError);
+    // Between the samples.
+    EXPECT_THROW(march::makeSdfGrid(*sdfSphere({3, 3, 3}, 1), 10), UsageError);
     EXPECT_THROW(makeSdfIntersector(sdfSphere({0, 0, 0}, 1), 0), UsageError);
 }
 

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 #include <poll.h>
+#include <sys/stat.h>
 
 #include <filesystem>
 #include <fstream>
@@ -54,6 +55,25 @@ TEST(FileWatch, FollowsLinksAndOtherNames) {
     std::filesystem::rename(folder / "new_link", link);
     EXPECT_EQ(changesOf(watch), std::set<std::string>{link});
     std::ofstream(folder / "third.gcode") << "five";
+    EXPECT_EQ(changesOf(watch), std::set<std::string>{link});
+}
+
+// Neither is ever written and closed.
+TEST(FileWatch, TellsOfAPipe) {
+    const test::ScratchFolder folder;
+    const std::string link = (folder / "link.gcode").string();
+    const std::string pipe = (folder / "pipe").string();
+    std::ofstream(folder / "part.gcode") << "one";
+    ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+    std::filesystem::create_symlink("part.gcode", link);
+    FileWatch watch({link});
+    std::filesystem::remove(link);
+    (void)watch.changed();
+    std::filesystem::create_symlink("pipe", link);
+    EXPECT_EQ(changesOf(watch), std::set<std::string>{link});
+    std::filesystem::remove(link);
+    (void)watch.changed();
+    ASSERT_EQ(mkfifo(link.c_str(), 0600), 0);
     EXPECT_EQ(changesOf(watch), std::set<std::string>{link});
 }
 

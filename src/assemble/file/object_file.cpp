@@ -44,6 +44,10 @@ shade::MaterialOptions readMaterial(JsonSection& section, const std::filesystem:
             material.each[item.key()] = materialBeside(folder, text);
     }
     if (material.by.empty()) section.fail("material.by", "the attribute that chooses, e.g. \"tool\"");
+    if (material.each.empty())
+        section.fail("material", fmt::format("a material for a value of {0} beside \"by\", e.g. \"0\": \"pla-blue\"; "
+                                             "to colour by it write \"color_by\": \"{0}\"",
+                                             material.by));
     return material;
 }
 

@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
 
 namespace stratum::gcode {
 namespace {
@@ -55,7 +56,8 @@ std::string_view inflateAll(std::string_view packed, std::span<char> out) {
 
 }  // namespace
 
-BlockReader::BlockReader(std::string_view bytes, std::string_view name) : bytes_(bytes), name_(name) {
+BlockReader::BlockReader(std::string_view bytes, std::string_view name, Checksums checksums)
+    : bytes_(bytes), name_(name), check_(checksums) {
     const auto refuse = [name](const std::string& what) { throw InputError(fmt::format("{}: {}", name, what)); };
     if (bytes.size() < kFileHeader)
         refuse(
@@ -112,7 +114,7 @@ bool BlockReader::next(Block& block) {
     const std::size_t checked = header + parameters + stored;
     const std::size_t whole = checked + (checksums_ ? 4 : 0);
     if (left < whole) cut(whole);
-    if (checksums_) {
+    if (checksums_ && check_ == Checksums::check) {
         const auto* data = reinterpret_cast<const Bytef*>(bytes_.data() + at_);
         const auto found = static_cast<std::uint32_t>(crc32_z(0, data, checked));
         const std::uint32_t expected = littleEndian(bytes_, at_ + checked, 4);
@@ -226,6 +228,23 @@ std::string findLostEnd(std::string_view text) {
     return fmt::format("its last progress mark, M73, says {:g} %", percent);
 }
 
+// The block with which the headers alone state more than `most` bytes, so that nothing is unpacked in vain. Damage is
+// left to the reader that checks all: it tells of the first one.
+std::optional<Block> statedBeyond(std::size_t most, std::string_view bytes, std::string_view name) {
+    BlockReader headers(bytes, name, BlockReader::Checksums::skip);
+    Block block;
+    std::size_t stated = 0;
+    try {
+        while (headers.next(block)) {
+            if (block.type != BlockType::thumbnail) stated += block.size;
+            if (stated > most) return block;
+        }
+    } catch (const InputError&) {
+        return std::nullopt;
+    }
+    return std::nullopt;
+}
+
 }  // namespace
 
 bool isBgcode(std::string_view bytes) { return bytes.starts_with("GCDE"); }
@@ -236,6 +255,11 @@ Program openBgcode(std::string_view bytes, std::string_view name, const Containe
     Program program;
     program.format = "bgcode";
     BlockReader reader(bytes, name);
+    const auto refuseLarge = [&](const Block& at) {
+        reader.fail(
+            at, fmt::format("the file unpacks to more than {} bytes from {}; this is no print", most, bytes.size()));
+    };
+    if (const std::optional<Block> beyond = statedBeyond(most, bytes, name)) refuseLarge(*beyond);
     Block block;
     ByteBuffer data;
     std::size_t gcode_blocks = 0;
@@ -250,9 +274,7 @@ Program openBgcode(std::string_view bytes, std::string_view name, const Containe
                         fmt::format("encoding {}, expected {}; the file is damaged or newer: export it as ASCII G-code",
                                     block.encoding, gcode ? "0 to 2" : "0"));
         const std::size_t unpacked = block.size * (packed ? 2 : 1);  // MeatPack at most doubles
-        if (unpacked > most || program.unpacked.size() + metadata_bytes > most - unpacked)
-            reader.fail(block, fmt::format("the file unpacks to more than {} bytes from {}; this is no print", most,
-                                           bytes.size()));
+        if (unpacked > most || program.unpacked.size() + metadata_bytes > most - unpacked) refuseLarge(block);
         if (gcode && !packed) {
             reader.unpack(block, {program.unpacked.extend(block.size), block.size});
         } else {

@@ -38,8 +38,11 @@ struct Block {
 /// Walks over the blocks of one file. Errors are InputErrors that start with the file's name.
 class BlockReader {
 public:
+    /// Whether next() computes checksums.
+    enum class Checksums : std::uint8_t { check, skip };
+
     /// Checks the file header. `bytes` and `name` must outlive the reader.
-    BlockReader(std::string_view bytes, std::string_view name);
+    BlockReader(std::string_view bytes, std::string_view name, Checksums checksums = Checksums::check);
 
     /// Reads the next block's header and checks its sizes and its CRC32; false at the end of the file.
     bool next(Block& block);
@@ -55,7 +58,8 @@ private:
     std::string_view name_;
     std::size_t at_ = 0;
     std::size_t count_ = 0;
-    bool checksums_ = false;
+    Checksums check_;
+    bool checksums_ = false;  // the file has them
 };
 
 // Settings that a container stores beside the G-code: as pairs, and as comments for the reader of the text.

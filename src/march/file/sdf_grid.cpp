@@ -8,6 +8,7 @@
 #include <openvdb/tools/SignedFloodFill.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -112,6 +113,7 @@ openvdb::FloatGrid::Ptr makeSdfGrid(const trace::Sdf& shape, double voxel_size, 
     const auto nz = static_cast<std::size_t>(count[2]);
     refuseIfTooLarge(shape, voxel_size, {low, {nx, ny, nz}}, box.max[0] - box.min[0], memory_limit);
     // Columns of leaves along z, each by one thread; joined in order.
+    std::atomic<bool> has_inside{false};
     std::vector<std::vector<std::unique_ptr<Leaf>>> columns(nx * ny);
     parallelFor(columns.size(), 4, [&](std::size_t begin, std::size_t end) {
         for (std::size_t column = begin; column != end; ++column) {
@@ -122,15 +124,18 @@ openvdb::FloatGrid::Ptr makeSdfGrid(const trace::Sdf& shape, double voxel_size, 
                 const openvdb::Vec3d middle = (origin.asVec3d() + openvdb::Vec3d(0.5 * (kLeaf - 1))) * voxel_size;
                 if (std::abs(shape.distance({middle[0], middle[1], middle[2]})) > reach) continue;
                 auto leaf = std::make_unique<Leaf>(origin, static_cast<float>(background));
+                bool inside = false;
                 for (openvdb::Index n = 0; n < Leaf::SIZE; ++n) {
                     const openvdb::Vec3d p = leaf->offsetToGlobalCoord(n).asVec3d() * voxel_size;
                     const double d = shape.distance({p[0], p[1], p[2]});
                     const double kept = std::clamp(d, -background, background);
+                    inside = inside || d < 0.0;
                     if (std::abs(d) < background)
                         leaf->setValueOn(n, static_cast<float>(kept));
                     else
                         leaf->setValueOff(n, static_cast<float>(kept));
                 }
+                if (inside) has_inside.store(true, std::memory_order_relaxed);
                 if (!leaf->isEmpty()) columns[column].push_back(std::move(leaf));
             }
         }
@@ -138,8 +143,12 @@ openvdb::FloatGrid::Ptr makeSdfGrid(const trace::Sdf& shape, double voxel_size, 
     auto grid = openvdb::FloatGrid::create(static_cast<float>(background));
     for (auto& column : columns)
         for (auto& leaf : column) grid->tree().addLeaf(leaf.release());
-    if (grid->tree().leafCount() == 0)
-        throw UsageError(fmt::format("nothing of the shape is left on voxels of {}; take smaller ones", voxel_size));
+    // A shape between the samples has a narrow band, too, but no surface.
+    if (!has_inside)
+        throw UsageError(
+            fmt::format("nothing of a shape {:.3g} x {:.3g} x {:.3g} large is left on voxels of {:g}; take a smaller "
+                        "voxel_size, or leave it out and trace the shape as it is",
+                        box.max[0] - box.min[0], box.max[1] - box.min[1], box.max[2] - box.min[2], voxel_size));
     openvdb::tools::signedFloodFill(grid->tree());
     grid->setName("surface");
     grid->setGridClass(openvdb::GRID_LEVEL_SET);

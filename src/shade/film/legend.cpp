@@ -8,6 +8,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
 
 namespace stratum::shade {
 namespace {
@@ -23,8 +26,8 @@ Color encoded(const Color& linear) { return {encodeSrgb(linear.r), encodeSrgb(li
 struct Sizes {
     float capital, line, swatch, margin, ramp_width, ramp_height;
 
-    explicit Sizes(int height)
-        : capital(std::clamp(std::round(0.0145f * static_cast<float>(height)), 7.0f, 48.0f)),
+    explicit Sizes(float of_capital)
+        : capital(of_capital),
           line(std::round(2.1f * capital)),
           swatch(std::round(1.25f * capital)),
           margin(std::round(1.2f * capital)),
@@ -45,49 +48,79 @@ std::string titleOf(const Legend& legend) {
     return legend.unit.empty() ? legend.title : fmt::format("{} ({})", legend.title, legend.unit);
 }
 
+/// What is written, and how much room it takes.
+struct LegendLayout {
+    Sizes sizes;
+    std::string title, least, most;
+    std::string rest;       // "and 3 more", if not all entries fit into the picture
+    std::size_t shown = 0;  // entries
+    float inner = 0.0f;     // width within the margins
+    float width = 0.0f, height = 0.0f;
+
+    LegendLayout(const Legend& legend, int picture_height, float capital)
+        : sizes(capital),
+          title(titleOf(legend)),
+          least(fmt::format("{:.4g}", legend.least)),
+          most(fmt::format("{:.4g}", legend.most)) {
+        const Sizes& s = sizes;
+        // Number of lines below the title that fit into the picture; the last one states how many are left out.
+        const auto room = static_cast<std::size_t>(
+            std::max(1.0f, std::floor((static_cast<float>(picture_height) - 4.0f * s.margin) / s.line) - 1));
+        const bool cut = legend.entries.size() > room;
+        shown = cut ? room - 1 : legend.entries.size();
+        if (cut) rest = fmt::format("and {} more", legend.entries.size() - shown);
+        const std::size_t lines = legend.ramp.empty() ? shown + (cut ? 1 : 0) : 2;
+        inner = std::max(textWidth(title, capital), textWidth(rest, capital));
+        for (std::size_t n = 0; n < shown; ++n)
+            inner = std::max(inner, 1.6f * s.swatch + textWidth(legend.entries[n].name, capital));
+        if (!legend.ramp.empty())
+            inner = std::max(inner, std::max(s.ramp_width, textWidth(least + "  " + most, capital)));
+        width = inner + 2.0f * s.margin;
+        height = s.line * static_cast<float>(lines + 1) + 1.2f * s.margin;
+    }
+};
+
+// Letters as large as the picture asks for, and smaller ones where the legend would hide too much of it.
+LegendLayout legendLayoutOf(const Legend& legend, int width, int height) {
+    constexpr float kMostShare = 1.0f / 8.0f;
+    constexpr float kLeastCapital = 5.0f;  // can just be read
+    const float room = kMostShare * static_cast<float>(width) * static_cast<float>(height);
+    float capital = std::clamp(std::round(0.0145f * static_cast<float>(height)), 7.0f, 48.0f);
+    while (true) {
+        LegendLayout layout(legend, height, capital);
+        if (layout.width * layout.height <= room || capital <= kLeastCapital) return layout;
+        capital -= 1.0f;
+    }
+}
+
 }  // namespace
 
 void draw(const Legend& legend, int width, int height, std::vector<std::uint8_t>& rgb) {
-    const Sizes s(height);
+    const LegendLayout layout = legendLayoutOf(legend, width, height);
+    const Sizes& s = layout.sizes;
+    const float inner = layout.inner;
     Canvas canvas{width, height, rgb};
-    const std::string title = titleOf(legend);
-    const std::string least = fmt::format("{:.4g}", legend.least);
-    const std::string most = fmt::format("{:.4g}", legend.most);
-    // Number of lines below the title that fit into the picture; the last one states how many are left out.
-    const auto room = static_cast<std::size_t>(
-        std::max(1.0f, std::floor((static_cast<float>(height) - 4.0f * s.margin) / s.line) - 1));
-    const bool cut = legend.entries.size() > room;
-    const std::size_t shown = cut ? room - 1 : legend.entries.size();
-    const std::string rest = cut ? fmt::format("and {} more", legend.entries.size() - shown) : std::string();
-    const std::size_t lines = legend.ramp.empty() ? shown + (cut ? 1 : 0) : 2;
-    float inner = std::max(textWidth(title, s.capital), textWidth(rest, s.capital));
-    for (std::size_t n = 0; n < shown; ++n)
-        inner = std::max(inner, 1.6f * s.swatch + textWidth(legend.entries[n].name, s.capital));
-    if (!legend.ramp.empty())
-        inner = std::max(inner, std::max(s.ramp_width, textWidth(least + "  " + most, s.capital)));
-
     const float left = s.margin;
     const float top = s.margin;
-    const float panel_height = s.line * static_cast<float>(lines + 1) + 1.2f * s.margin;
-    canvas.fill(left, top, left + inner + 2.0f * s.margin, top + panel_height, kPanel, kPanelShare);
+    canvas.fill(left, top, left + layout.width, top + layout.height, kPanel, kPanelShare);
     const float x = left + s.margin;
     float baseline = top + s.margin + s.capital;
-    drawText(canvas, x, baseline, s.capital, title, kInk);
+    drawText(canvas, x, baseline, s.capital, layout.title, kInk);
     if (!legend.ramp.empty()) {
         baseline += s.line;
         drawSwatch(canvas, x, baseline - s.capital, inner, s.ramp_height, legend.ramp);
         baseline += s.line;
-        drawText(canvas, x, baseline, s.capital, least, kInk);
-        drawText(canvas, x + inner - textWidth(most, s.capital), baseline, s.capital, most, kInk);
+        drawText(canvas, x, baseline, s.capital, layout.least, kInk);
+        drawText(canvas, x + inner - textWidth(layout.most, s.capital), baseline, s.capital, layout.most, kInk);
         return;
     }
-    for (std::size_t n = 0; n < shown; ++n) {
+    for (std::size_t n = 0; n < layout.shown; ++n) {
         baseline += s.line;
         const float middle = baseline - 0.5f * s.capital;
         drawSwatch(canvas, x, std::round(middle - 0.5f * s.swatch), s.swatch, s.swatch, {legend.entries[n].color});
         drawText(canvas, x + 1.6f * s.swatch, baseline, s.capital, legend.entries[n].name, kInk);
     }
-    if (cut) drawText(canvas, x, baseline + s.line, s.capital, rest, kInk);
+    if (!layout.rest.empty()) drawText(canvas, x, baseline + s.line, s.capital, layout.rest, kInk);
 }
 
 }  // namespace stratum::shade

@@ -73,6 +73,9 @@ TEST(ObjectFile, SaysWhatIsWrong) {
             "objects[0].transform.rotation: unknown key; did you mean 'rotate'");
     refused(R"({"vdb": "a.vdb", "transform": {"scale": "big"}})", "objects[0].transform.scale: expected 3 numbers");
     refused(R"({"vdb": "a.vdb", "material": {"0": "x"}})", "objects[0].material.by");
+    for (const char* material : {R"({"by": "tool"})", R"({"by": "tool", "other": "pla-blue"})"})
+        refused((R"({"vdb": "a.vdb", "material": )" + std::string(material) + "}").c_str(),
+                "objects[0].material: expected a material for a value of tool beside \"by\"");
     refused(R"({"sdf": {"sphere": {"radius": 1}}, "color_by": "tool"})", "an sdf has no attributes");
     refused(R"({"vdb": "a.vdb", "color_range": [1, 2]})", "an attribute beside it, in");
     refused(R"({"vdb": "a.vdb", "color_by": "speed", "color_range": [2, 2]})", "the lower one first");

@@ -120,6 +120,12 @@ TEST(Bgcode, ABombIsStopped) {
     limits.most_bytes = 10000;
     EXPECT_NE(bgcodeError(sample::bgcode(sample::program(100), 1, 0), limits).find("unpacks to more than 10000 bytes"),
               std::string::npos);
+    // By what the headers state, before anything is unpacked.
+    int steps = 0;
+    EXPECT_THROW(
+        openBgcode(sample::bgcode(sample::program(1000), 1, 0), "a.bgcode", limits, [&steps](double) { ++steps; }),
+        InputError);
+    EXPECT_EQ(steps, 0);
     const std::string metadata(std::size_t{5} << 20, 'x');
     EXPECT_NE(bgcodeError(sample::bgcodeHeader() + block(2, 1, kIni, metadata)).find("of metadata"), std::string::npos);
 }

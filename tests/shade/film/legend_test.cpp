@@ -57,6 +57,21 @@ TEST(Legend, ShowsARamp) {
         EXPECT_GT(countOf(rgb, color), 100);
 }
 
+TEST(Legend, LeavesSmallPicturesVisible) {
+    Legend legend;
+    legend.title = "feature";
+    for (const char* name : {"outer wall", "inner wall", "overhang wall", "solid infill", "sparse infill",
+                             "top surface", "bottom surface", "bridge", "gap infill", "skirt"})
+        legend.entries.push_back({name, Color(0.5f)});
+    const auto hidden = [&legend](int width, int height) {
+        const auto rgb = drawn(legend, width, height);
+        return 1.0 - countOf(rgb, {40, 40, 40}) / (1.0 * width * height);
+    };
+    EXPECT_LT(hidden(kPictureWidth, kPictureHeight), 0.15);  // by the smallest letters
+    EXPECT_GT(hidden(kPictureWidth, kPictureHeight), 0.05);
+    EXPECT_LT(hidden(640, 480), 0.125);
+}
+
 TEST(Legend, FitsIntoSmallPicturesAndLongLists) {
     Legend legend;
     legend.title = "object";
