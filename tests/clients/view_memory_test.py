@@ -4,6 +4,7 @@ import json
 import os
 import subprocess
 import tempfile
+import time
 from urllib.parse import quote
 
 from run_tools import BIN, check, skip_without
@@ -27,6 +28,28 @@ def lines():
             yield f"G0 X{x} Y{y:.1f}\nG1 X{x + 1} Y{y:.1f} E0.03\nG1 X{x + 1.9} Y{y + 0.1:.1f} E0.03"
 
 
+# Keeps the browser's own picture of the moment in which it takes the place of the server's.
+WATCH = """window.taken = null;
+document.addEventListener('DOMContentLoaded', () => new MutationObserver(() => {
+  if (!window.taken && document.getElementById('picture').classList.contains('behind'))
+    window.taken = document.getElementById('beads').toDataURL();
+}).observe(document.getElementById('picture'), { attributes: true }));"""
+
+
+def first_own(page, url):
+    """Pictures that the page draws itself: the first one that is seen, None where the server's finished one stays on top of
+    it, and the same view with all beads."""
+    page.execute_cdp_cmd("Page.addScriptToEvaluateOnNewDocument", {"source": WATCH})
+    page.get("about:blank")
+    page.get(url)
+    end = time.monotonic() + 120
+    there = "return window.taken || (document.body.dataset.moving === 'own' && picture.dataset.final === String(vdbviewAsked()))"
+    while not page.execute_script(there) and time.monotonic() < end:
+        time.sleep(0.1)
+    taken = page.execute_script("return window.taken")
+    return taken, page.execute_async_script("window.vdbviewDrawn().then(arguments[0])")
+
+
 with tempfile.TemporaryDirectory() as scratch:
     path = os.path.join(scratch, "beads.gcode")
     with open(path, "w", encoding="utf-8") as file:
@@ -36,14 +59,17 @@ with tempfile.TemporaryDirectory() as scratch:
         with subprocess.Popen([os.path.join(BIN, "vdbview"), path, "--quiet", "--voxel-size", "0.4"], stdout=subprocess.PIPE,
                               text=True) as process:
             try:
-                empty, finished, turned, kept = memory_of(page, process.stdout.readline().strip() + "#" + quote(json.dumps({"spp": 1})), 3)
+                url = process.stdout.readline().strip()
+                empty, finished, turned, kept = memory_of(page, url + "#" + quote(json.dumps({"spp": 1})), 3)
                 beads = page.execute_script("return window.vdbviewLog.some((e) => e.kind === 'own')")
+                taken, whole = first_own(page, url + "#" + quote(json.dumps({"spp": 64})))
             finally:
                 process.terminate()
     finally:
         page.quit()
 print(f"renderer and GPU's process: empty {empty}, finished {finished}, turned {turned}, without garbage {kept} MB")
 check(beads, "the page draws the beads")
+check(taken in (None, whole), "the page's own picture is seen when all beads are in it, not layer by layer from below")
 for name, moment, most in (("turned", turned, MOST), ("without garbage", kept, MOST_KEPT)):
     added = sum(moment) - sum(empty)
     check(20 < added < most, f"{name}: the page takes {added:.0f} MB more than an empty one; at most {most}")

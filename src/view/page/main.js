@@ -28,6 +28,8 @@ let viewFrom = 0; // the first number that the named view has
 let latest = 0; // the number that the last picture answers
 let awaited = false; // a finished picture
 let shownSize = [0, 0]; // of the last view that was asked for
+let shownView = ""; // the same
+let onTop = {}; // the server's picture over the browser's own: its view, and whether it is finished
 /** For measurements and tests: one entry a picture, the number of the last view, and of each kind of moves how many are shown. */
 const log = (window.vdbviewLog = []);
 window.vdbviewAsked = () => number;
@@ -100,18 +102,26 @@ function sendAsked() {
   motion.show();
   if (!connection.ready) return;
   sentAt.set(++number, performance.now());
+  shownView = viewOf();
   const stops = own.ready && moving; // the picture that the server is at
   if (!stops || awaited) connection.send({ type: "show", number, moving, own: own.table?.complete && !own.why, state: toMessage(state, shownSize) });
   awaited = !stops;
   if (!moving) history.replaceState(null, "", location.pathname + location.search + toFragment(state, file));
 }
 
-/** The beads in front of the camera, at once; a named view waits for the server, which fits it. */
+const viewOf = () => JSON.stringify([state, shownSize]);
+function hideServers() {
+  picture.classList.add("behind");
+  onTop = {};
+}
+
+/** The beads in front of the camera, at once; a named view waits for the server, which fits it. The server's picture of the
+ * same view stays on top until all beads are in this one. */
 function drawOwn(moving) {
   camera = orbit?.camera ?? camera;
   if (!camera) return;
   aspect = shownSize[0] / shownSize[1];
-  picture.classList.add("behind");
+  if (moving || viewOf() !== onTop.view) hideServers();
   byId("loading").hidden = true;
   answer.lines = null;
   answer.head = own.head(state);
@@ -124,6 +134,7 @@ function drawOwn(moving) {
 }
 
 own.addEventListener("complete", () => {
+  if (!onTop.finished) hideServers();
   answer.lines = own.lines();
   answer.draw();
 });
@@ -175,6 +186,7 @@ connection.on("picture", async (detail) => {
   context.drawImage(bitmap, 0, 0);
   bitmap.close();
   if (detail.number === number) picture.classList.remove("behind");
+  onTop = detail.number === number ? { view: shownView, finished: detail.kind === "final" } : {};
   if (detail.number >= viewFrom) camera = detail.camera;
   aspect = detail.width / detail.height;
   latest = detail.number;
