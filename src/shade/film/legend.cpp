@@ -22,13 +22,15 @@ constexpr float kPanelShare = 0.86f;
 
 Color encoded(const Color& linear) { return {encodeSrgb(linear.r), encodeSrgb(linear.g), encodeSrgb(linear.b)}; }
 
+constexpr float kUsualLeast = 7.0f;  // pixels: smaller capitals, in narrower lines, where room is short
+
 /// All lengths in pixels, from the height of capitals.
 struct Sizes {
     float capital, line, swatch, margin, ramp_width, ramp_height;
 
     explicit Sizes(float of_capital)
         : capital(of_capital),
-          line(std::round(2.1f * capital)),
+          line(std::round((capital < kUsualLeast ? 1.7f : 2.1f) * capital)),
           swatch(std::round(1.25f * capital)),
           margin(std::round(1.2f * capital)),
           ramp_width(std::round(14.0f * capital)),
@@ -85,7 +87,7 @@ LegendLayout legendLayoutOf(const Legend& legend, int width, int height) {
     constexpr float kMostShare = 1.0f / 8.0f;
     constexpr float kLeastCapital = 5.0f;  // can just be read
     const float room = kMostShare * static_cast<float>(width) * static_cast<float>(height);
-    float capital = std::clamp(std::round(0.0145f * static_cast<float>(height)), 7.0f, 48.0f);
+    float capital = std::clamp(std::round(0.0145f * static_cast<float>(height)), kUsualLeast, 48.0f);
     while (true) {
         LegendLayout layout(legend, height, capital);
         if (layout.width * layout.height <= room || capital <= kLeastCapital) return layout;

@@ -67,7 +67,7 @@ TEST(Legend, LeavesSmallPicturesVisible) {
         const auto rgb = drawn(legend, width, height);
         return 1.0 - countOf(rgb, {40, 40, 40}) / (1.0 * width * height);
     };
-    EXPECT_LT(hidden(kPictureWidth, kPictureHeight), 0.15);  // by the smallest letters
+    EXPECT_LT(hidden(kPictureWidth, kPictureHeight), 0.14);
     EXPECT_GT(hidden(kPictureWidth, kPictureHeight), 0.05);
     EXPECT_LT(hidden(640, 480), 0.125);
 }
