@@ -140,6 +140,7 @@ own.addEventListener("complete", () => {
 });
 own.addEventListener("moves", () => ask(false));
 own.addEventListener("changed", () => {
+  if (own.why) onTop = {}; // it may be of another file, or of an older one
   motion.show();
   byId("mover").textContent = own.ready ? "drawn by this browser" : `streamed by the server${own.why ? `: ${own.why}` : ""}`;
   document.body.dataset.moving = own.ready ? "own" : "stream";
