@@ -11,14 +11,39 @@
 #include <functional>
 #include <memory>
 #include <stop_token>
+#include <utility>
+#include <vector>
 
 namespace stratum::voxelize {
 namespace {
 
+using UpperNode = openvdb::FloatTree::RootNodeType::ChildNodeType;
+using LowerNode = UpperNode::ChildNodeType;
+
+// A copy that stops between nodes of 128^3 voxels: most of the preparation's time is that of its memory.
+openvdb::FloatTree::Ptr copyOf(const openvdb::FloatTree& tree) {
+    auto copy = std::make_shared<openvdb::FloatTree>(tree.background());
+    for (auto tile = tree.root().cbeginValueAll(); tile; ++tile)
+        copy->root().addTile(tile.getCoord(), *tile, tile.isValueOn());
+    std::vector<std::pair<UpperNode*, const LowerNode*>> places;
+    for (auto child = tree.root().cbeginChildOn(); child; ++child) {
+        auto upper = std::make_unique<UpperNode>(child->origin(), tree.background());
+        for (auto tile = child->cbeginValueAll(); tile; ++tile) upper->addTile(tile.pos(), *tile, tile.isValueOn());
+        for (auto lower = child->cbeginChildOn(); lower; ++lower) places.emplace_back(upper.get(), &*lower);
+        copy->root().addChild(upper.release());
+    }
+    std::vector<std::unique_ptr<LowerNode>> nodes(places.size());
+    parallelFor(places.size(), 1, [&](std::size_t first, std::size_t last) {
+        for (std::size_t n = first; n != last; ++n) nodes[n] = std::make_unique<LowerNode>(*places[n].second);
+    });
+    for (std::size_t n = 0; n != places.size(); ++n) places[n].first->addChild(nodes[n].release());
+    return copy;
+}
+
 // A level set that asks whether the work shall stop. FastSweeping's preparations may not be cancelled from outside:
-// they copy trees, and what a cancelled loop leaves of a copy has null pointers, which clearing it follows. Their long
-// loop, over the values, asks for the voxel size every 32 leaves, when all copies are whole; so does the start of each
-// sweep.
+// what a cancelled loop leaves of a tree has null pointers, which clearing it follows. Its copy stops by itself. Its
+// masks and buffers can't be stopped. Its long loop, over the values, asks for the voxel size every 32 leaves; so does
+// the start of each sweep.
 class StoppableGrid : public openvdb::FloatGrid {
 public:
     using Ptr = std::shared_ptr<StoppableGrid>;
@@ -30,9 +55,9 @@ public:
         setTransform(grid.transformPtr());
     }
     Ptr deepCopy() const {
-        auto copy = std::make_shared<StoppableGrid>(*this);
-        ask();
-        return copy;
+        const openvdb::FloatGrid::Ptr copy = copyWithNewTree();
+        copy->setTree(copyOf(tree()));
+        return std::make_shared<StoppableGrid>(*copy, stop_);
     }
     openvdb::Vec3d voxelSize() const {
         ask();
