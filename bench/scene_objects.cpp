@@ -5,6 +5,7 @@
 
 #include "march/brick/brick_intersector.h"
 #include "march/file/level_set_file.h"
+#include "study/cost/times.h"
 #include "trace/scene_intersector.h"
 
 #include <fmt/format.h>
@@ -20,6 +21,7 @@
 #include <vector>
 
 using namespace stratum;
+using study::median;
 
 namespace {
 
@@ -66,11 +68,6 @@ bool same(const Answers& a, const Answers& b) {
         return x.t == y.t && (!std::isfinite(x.t) || (x.object == y.object && x.normal == y.normal));
     };
     return a.blocked == b.blocked && std::equal(a.hits.begin(), a.hits.end(), b.hits.begin(), b.hits.end(), equal);
-}
-
-double median(std::vector<double> values) {
-    std::sort(values.begin(), values.end());
-    return values[values.size() / 2];
 }
 
 }  // namespace

@@ -57,8 +57,7 @@ int main(int argc, char** argv) {
                    series.cpu, cpu.back());
     }
     std::sort(wall.begin(), wall.end());
-    std::sort(cpu.begin(), cpu.end());
     fmt::print("medians: {:.2f} ({:.2f}-{:.2f}) wall, {:.2f} CPU\n", wall[wall.size() / 2], wall.front(), wall.back(),
-               cpu[cpu.size() / 2]);
+               study::median(cpu));
     return 0;
 }

@@ -17,13 +17,9 @@
 #include <vector>
 
 using namespace stratum;
+using study::median;
 
 namespace {
-
-double median(std::vector<double> values) {
-    std::sort(values.begin(), values.end());
-    return values[values.size() / 2];
-}
 
 openvdb::FloatGrid::Ptr readByOpenVdb(const std::string& path, const std::string& name) {
     const InputFile input(path);

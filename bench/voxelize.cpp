@@ -203,10 +203,9 @@ int main(int argc, char** argv) {
         const double median = s.times[s.times.size() / 2].wall;
         std::vector<double> cpu;
         for (const Times& t : s.times) cpu.push_back(t.cpu);
-        std::sort(cpu.begin(), cpu.end());
         if (reference == 0) reference = median;
         fmt::print("{:28} {:9.3f}  {:8.3f}-{:8.3f}  {:9.2f}  {:9.2f}  {:7.1f}\n", s.name, median, s.times.front().wall,
-                   s.times.back().wall, median / active * 1e9, cpu[cpu.size() / 2] / active * 1e9, median / reference);
+                   s.times.back().wall, median / active * 1e9, study::median(cpu) / active * 1e9, median / reference);
     }
     return 0;
 }

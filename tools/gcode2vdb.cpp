@@ -275,6 +275,10 @@ void run(const tools::CommandSource& options, tools::ConvertCommand& o) {
     if (!o.compare.model.empty()) files.reads(o.compare.model);
     for (const fs::path& output : outputs) {
         if (o.writesGrid()) tools::noteOutput(o, output, o.output.empty() || outputs.size() > 1 ? "" : "-o", files);
+        // USD ends a file's path there.
+        if (o.usda && output.filename().string().find('@') != std::string::npos)
+            throw UsageError(
+                fmt::format("--usda: a .usda can't name a file with @ in it, {}; choose another -o", output.string()));
         if (o.usda) files.writes(tools::usdaOf(output).string(), "--usda");
     }
     files.writesBeside(o.dump_toolpath, "--dump-toolpath");

@@ -202,9 +202,6 @@ Json renderFrame(const TraceCommand& o, const Frame& frame, const assemble::Trac
     return reportOf(o, frame, output, objects, scene, result, seconds, threads);
 }
 
-namespace fs = std::filesystem;
-using Json = nlohmann::ordered_json;
-
 assemble::TracingOptions readingOf(const TraceCommand& o) {
     assemble::TracingOptions reading = o.tracing;
     reading.hash = !o.render.checkpoint.empty();
@@ -213,14 +210,8 @@ assemble::TracingOptions readingOf(const TraceCommand& o) {
 }
 
 std::vector<assemble::ObjectOptions> objectsOf(const TraceCommand& o, std::size_t n) {
-    std::vector<assemble::ObjectOptions> wanted = o.objects;
-    if (wanted.empty()) {
-        wanted.emplace_back();
-        wanted.back().vdb = o.inputs[n];
-        wanted.back().grid = o.grid;
-        wanted.back().up = o.file_up;
-    }
-    return wanted;
+    if (!o.objects.empty()) return o.objects;
+    return {{.vdb = o.inputs[n], .grid = o.grid, .up = o.file_up}};
 }
 
 assemble::StageOptions stageOptionsOf(const TraceCommand& o) {

@@ -12,15 +12,14 @@
 #include "base/checksum.h"
 #include "base/error.h"
 #include "base/input_file.h"
+#include "base/text.h"
 #include "gcode/container/container.h"
 #include "voxelize/grid/attributes.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <charconv>
 #include <filesystem>
-#include <system_error>
 #include <utility>
 
 namespace stratum::tools {
@@ -167,17 +166,15 @@ void applyTurns(TraceCommand& o) {
     if (once && !film)
         throw UsageError(
             "--turntable: how many pictures? write --turntable 36, or make a film with --film part.mp4 --turntable");
-    int turns = once ? 1 : 0;
-    const char* const end = o.turns.data() + o.turns.size();
-    const auto [stop, error] = std::from_chars(o.turns.data(), end, turns);
-    if (!once && (error != std::errc{} || stop != end))
+    const std::optional<int> turns = once ? 1 : parsed<int>(o.turns);
+    if (!turns)
         throw UsageError(fmt::format(
             "--turntable {}: expected a whole number; put FILE before it, or write --turntable 1", o.turns));
-    if (turns < 1 || turns > 10000) throw UsageError(fmt::format("--turntable {}: must be from 1 to 10000", o.turns));
+    if (*turns < 1 || *turns > 10000) throw UsageError(fmt::format("--turntable {}: must be from 1 to 10000", o.turns));
     if (film)
-        o.film.turns = turns;
+        o.film.turns = *turns;
     else
-        o.turntable = turns;
+        o.turntable = *turns;
 }
 
 void addMaterialOptions(CLI::App& app) {

@@ -119,18 +119,14 @@ view::GivenInput givenInput(const ViewCommand& o, const std::string& path, const
         assemble::completeSamples(scene);
         given.objects = scene.objects;
         if (given.objects.empty()) {
-            given.objects.emplace_back();
-            given.objects.front().vdb = scene.print;
-            given.objects.front().grid = scene.grid;
-            given.objects.front().up = scene.file_up;
+            given.objects.push_back({.vdb = scene.print, .grid = scene.grid, .up = scene.file_up});
             given.source = scene.print;
         }
         given.options = scene;
         given.options.render.seconds = 0.0;  // pictures by the clock differ from each other
         given.options.render.checkpoint.clear();
     } else {
-        given.objects.emplace_back();
-        given.objects.front().vdb = path;
+        given.objects.push_back({.vdb = path});
     }
     const bool prints = std::any_of(given.objects.begin(), given.objects.end(),
                                     [](const auto& object) { return !object.sdf && !assemble::isVdbFile(object.vdb); });

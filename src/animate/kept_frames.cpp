@@ -64,6 +64,8 @@ void KeptFrames::keep(std::size_t frame, const std::vector<std::uint8_t>& rgb) c
     if (error)
         throw OutputError(fmt::format("{}: can't be made ({}); finished frames are kept there until the film is whole",
                                       folder_.string(), error.message()));
+    // A damaged one may have lost its mark; by its name it is one of these.
+    const Replacement may(pathOf(frame));
     AtomicFile(pathOf(frame)).write([&](const fs::path& to) {
         shade::writePng(to, width_, height_, rgb, {{"Software", kProgramMark}});
     });

@@ -80,9 +80,7 @@ ReadyScene readyScene(const std::vector<ObjectOptions>& objects, const PictureOp
 }
 
 ReadyScene readyScene(const std::string& path, const PictureOptions& options) {
-    ObjectOptions object;
-    object.vdb = path;
-    return readyScene(std::vector<ObjectOptions>{object}, options);
+    return readyScene(std::vector<ObjectOptions>{{.vdb = path}}, options);
 }
 
 }  // namespace stratum::assemble

@@ -49,6 +49,14 @@ std::optional<Number> parsed(std::string_view text, Base... base) {
     return error == std::errc{} && end == last ? std::optional(value) : std::nullopt;
 }
 
+/// What stands before the first of `ends`, or all of the text. Removes it, with that end, from the text.
+template <typename Ends>
+std::string_view takePiece(std::string_view& text, Ends ends) {
+    const std::string_view piece = text.substr(0, text.find_first_of(ends));
+    text.remove_prefix(std::min(piece.size() + 1, text.size()));
+    return piece;
+}
+
 /// The pieces between separators: at least one, which may be empty.
 inline std::vector<std::string_view> split(std::string_view text, char separator = ',') {
     std::vector<std::string_view> pieces;

@@ -21,6 +21,7 @@
 #include <string>
 #include <string_view>
 #include <tuple>
+#include <utility>
 
 namespace stratum::compare {
 namespace {
@@ -78,7 +79,11 @@ std::string_view attribute(std::string_view tag, std::string_view name) {
 
 double unitOfModel(const std::filesystem::path& path) {
     if (lowerCase(path.extension().string()) != ".3mf") return 1;
-    const std::string head = headOf(path.string());
+    std::string head = headOf(path.string());
+    for (std::size_t at = head.find("<!--"); at != std::string::npos; at = head.find("<!--", at)) {
+        const std::size_t end = head.find("-->", at);
+        head.erase(at, end == std::string::npos ? end : end + 3 - at);
+    }
     const std::size_t begin = head.find("<model");
     if (begin == std::string::npos) return 1;
     const std::string_view tag = std::string_view(head).substr(begin, head.find('>', begin) - begin);
@@ -114,10 +119,15 @@ void mergeEqualPoints(TriangleMesh& mesh) {
     std::erase_if(mesh.triangles, [](const Triangle& t) { return t[0] == t[1] || t[1] == t[2] || t[2] == t[0]; });
 }
 
-void append(const aiMesh& part, const std::string& name, TriangleMesh& mesh) {
+[[noreturn]] void refuseCount(const std::string& name) {
+    throw InputError(fmt::format("{}: more than {} triangles; simplify the model", name, kMostTriangles));
+}
+
+void append(const aiMesh& part, const aiMatrix4x4& place, const std::string& name, TriangleMesh& mesh) {
+    if (mesh.triangles.size() + part.mNumFaces > kMostTriangles) refuseCount(name);
     const auto first = static_cast<std::uint32_t>(mesh.points.size());
     for (unsigned n = 0; n < part.mNumVertices; ++n) {
-        const aiVector3D& p = part.mVertices[n];
+        const aiVector3D p = place * part.mVertices[n];
         if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z))
             throw InputError(fmt::format("{}: point {} is not finite; export the model again", name, n + 1));
         mesh.points.emplace_back(p.x, p.y, p.z);
@@ -128,26 +138,29 @@ void append(const aiMesh& part, const std::string& name, TriangleMesh& mesh) {
             if (face.mIndices[corner] >= part.mNumVertices)
                 throw InputError(
                     fmt::format("{}: face {} has a corner that is no point; export the model again", name, n + 1));
-        if (face.mNumIndices == 3)
-            mesh.triangles.push_back({first + face.mIndices[0], first + face.mIndices[1], first + face.mIndices[2]});
+        if (face.mNumIndices != 3) continue;
+        Triangle triangle{first + face.mIndices[0], first + face.mIndices[1], first + face.mIndices[2]};
+        if (place.Determinant() < 0) std::swap(triangle[1], triangle[2]);  // an item that the .3mf mirrors
+        mesh.triangles.push_back(triangle);
     }
+}
+
+void append(const aiScene& scene, const aiNode& node, const aiMatrix4x4& above, const std::string& name,
+            TriangleMesh& mesh) {
+    const aiMatrix4x4 place = above * node.mTransformation;
+    for (unsigned n = 0; n < node.mNumMeshes; ++n) append(*scene.mMeshes[node.mMeshes[n]], place, name, mesh);
+    for (unsigned n = 0; n < node.mNumChildren; ++n) append(scene, *node.mChildren[n], place, name, mesh);
 }
 
 TriangleMesh readByAssimp(const std::string& name) {
     Assimp::Importer importer;
     importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
-    const aiScene* scene =
-        importer.ReadFile(name, aiProcess_Triangulate | aiProcess_PreTransformVertices | aiProcess_SortByPType);
+    const aiScene* scene = importer.ReadFile(name, aiProcess_Triangulate | aiProcess_SortByPType);
     if (scene == nullptr)
         throw InputError(fmt::format("{}: can't be read as a model: {}; export it again as STL, 3MF or OBJ", name,
                                      importer.GetErrorString()));
-    std::size_t triangles = 0;
-    for (unsigned n = 0; n < scene->mNumMeshes; ++n) triangles += scene->mMeshes[n]->mNumFaces;
-    if (triangles > kMostTriangles)
-        throw InputError(
-            fmt::format("{}: {} triangles are more than {}; simplify the model", name, triangles, kMostTriangles));
     TriangleMesh mesh;
-    for (unsigned n = 0; n < scene->mNumMeshes; ++n) append(*scene->mMeshes[n], name, mesh);
+    append(*scene, *scene->mRootNode, aiMatrix4x4(), name, mesh);
     mergeEqualPoints(mesh);
     const double unit = unitOfModel(name);
     for (glm::dvec3& p : mesh.points) p *= unit;

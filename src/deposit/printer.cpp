@@ -8,7 +8,6 @@
 #include "deposit/limits/printer_text.h"
 #include "gcode/printer/machine_limits.h"
 
-#include <fast_float/fast_float.h>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
@@ -132,18 +131,16 @@ void parseSection(const std::string& text, DepositModel& deposit) {
     deposit.corner_fraction = 1;
     if (text == "stadium") return;
     const bool percent = text.ends_with('%');
-    const char* const last = text.data() + text.size() - (percent ? 1 : 0);
-    double value = 0;
-    const auto [end, error] = fast_float::from_chars(text.data(), last, value);
+    const auto value = parsed<double>(std::string_view(text).substr(0, text.size() - (percent ? 1 : 0)));
     constexpr double kLargest = 100;  // mm, or per cent
-    if (error != std::errc() || end != last || !(value >= 0 && value <= kLargest))
+    if (!value || !(*value >= 0 && *value <= kLargest))
         throw UsageError(fmt::format(
             "--section {}: expected stadium, a corner radius in mm (0.05), or a percentage of half the height (50%)",
             text));
     if (percent)
-        deposit.corner_fraction = value / 100;
+        deposit.corner_fraction = *value / 100;
     else
-        deposit.corner_mm = value;
+        deposit.corner_mm = *value;
 }
 
 }  // namespace stratum::deposit

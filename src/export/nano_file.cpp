@@ -3,6 +3,7 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/memory.h"
+#include "base/own_file.h"
 #include "base/text.h"
 
 #define NANOVDB_USE_BLOSC
@@ -17,7 +18,9 @@
 #endif
 
 #include <exception>
+#include <fstream>
 #include <stdexcept>
+#include <string_view>
 #include <vector>
 
 namespace stratum::exporter {
@@ -80,6 +83,13 @@ void writeNano(const openvdb::GridPtrVec& grids, const std::filesystem::path& pa
         } catch (const std::exception& error) {
             throw writeError(to.string(), error.what());
         }
+        // The format has no room for a mark. Its readers take less than the 16 bytes of a segment's header for the end.
+        constexpr std::string_view kMark = kProgramMark;
+        static_assert(kMark.size() < 16);
+        std::ofstream file(to, std::ios::binary | std::ios::app);
+        file << kMark;
+        file.close();
+        if (!file) throw writeError(to.string());
     });
 }
 

@@ -3,7 +3,6 @@
 #include "base/error.h"
 #include "base/text.h"
 
-#include <fast_float/fast_float.h>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -23,11 +22,9 @@ namespace {
 std::vector<double> numbersOf(std::string_view text) {
     std::vector<double> numbers;
     for (const std::string_view word : split(text)) {
-        double value = 0;
-        const auto [end, error] = fast_float::from_chars(word.data(), word.data() + word.size(), value);
-        if (error != std::errc() || end != word.data() + word.size() || !std::isfinite(value))
-            refuse(text, "is not a list of numbers");
-        numbers.push_back(value);
+        const auto value = parsed<double>(word);
+        if (!value || !std::isfinite(*value)) refuse(text, "is not a list of numbers");
+        numbers.push_back(*value);
     }
     return numbers;
 }

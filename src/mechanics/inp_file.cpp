@@ -141,11 +141,13 @@ std::size_t writeMaterial(const SolidElements& elements, const gcode::Toolpath& 
     const auto& [g12, g13, g23] = elastic.shear;
     out.text("*MATERIAL, NAME=PLASTIC\n");
     if (elastic.isotropic) {
-        out.text(fmt::format("*ELASTIC\n{:g}, {:g}\n*SOLID SECTION, ELSET=PART, MATERIAL=PLASTIC\n", e1, nu12));
+        out.text(fmt::format("*ELASTIC\n{:.10g}, {:.10g}\n*SOLID SECTION, ELSET=PART, MATERIAL=PLASTIC\n", e1, nu12));
         return 0;
     }
-    out.text(fmt::format("*ELASTIC, TYPE=ENGINEERING CONSTANTS\n{:g}, {:g}, {:g}, {:g}, {:g}, {:g}, {:g}, {:g}\n{:g}\n",
-                         e1, e2, e3, nu12, nu13, nu23, g12, g13, g23));
+    out.text(
+        fmt::format("*ELASTIC, TYPE=ENGINEERING CONSTANTS\n{:.10g}, {:.10g}, {:.10g}, {:.10g}, {:.10g}, {:.10g}, "
+                    "{:.10g}, {:.10g}\n{:.10g}\n",
+                    e1, e2, e3, nu12, nu13, nu23, g12, g13, g23));
     const auto sets = directionSets(elements, toolpath);
     for (const auto& [direction, set] : sets) {
         out.set("ELSET", set);
@@ -166,8 +168,12 @@ InpReport writeInp(const SolidElements& elements, const Hexahedra& mesh, const g
     FileWriter file(path);
     Lines out(file);
     InpReport report;
+    // A line break in a file's name would end the comment.
+    std::string source = options.source;
+    std::ranges::replace_if(
+        source, [](unsigned char c) { return c < ' '; }, ' ');
     out.text(fmt::format("** by Stratum {}: {}\n** mm, N, MPa; {} nodes, {} elements of {:g} mm\n", STRATUM_VERSION,
-                         options.source, mesh.nodes.size(), elements.list.size(), elements.edge));
+                         source, mesh.nodes.size(), elements.list.size(), elements.edge));
     writeNodes(elements, mesh, options, out);
     writeElements(mesh, out);
     const std::vector<NamedSet> of_elements = elementSets(elements, toolpath);

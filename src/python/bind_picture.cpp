@@ -60,11 +60,8 @@ PictureObject makePicture(const std::string& path, RenderCall& call, const Repor
     const bool denoised = assemble::chooseDenoising(call.denoising(), options.render);
     options.tracing.events.fraction = report;
     options.tracing.events.begin = [&report](std::string_view, bool) { report(0); };
-    assemble::ObjectOptions object;
-    object.vdb = path;
-    object.grid = call.grid;
-    object.up = call.file_up;
-    const assemble::ReadyScene ready = assemble::readyScene(std::vector<assemble::ObjectOptions>{object}, options);
+    const std::vector<assemble::ObjectOptions> objects{{.vdb = path, .grid = call.grid, .up = call.file_up}};
+    const assemble::ReadyScene ready = assemble::readyScene(objects, options);
     const auto progress = [&report](std::uint64_t done, std::uint64_t all) {
         report(static_cast<double>(done) / static_cast<double>(all));
     };

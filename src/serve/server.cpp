@@ -202,10 +202,8 @@ struct Server::Parts {
                 });
                 return;
             }
-            {
-                socket.set_option(tcp::no_delay(true), error);
-                std::make_shared<Connection>(std::move(socket), *shared)->read();
-            }
+            socket.set_option(tcp::no_delay(true), error);
+            std::make_shared<Connection>(std::move(socket), *shared)->read();
             accept();
         });
     }
@@ -242,10 +240,7 @@ Server::Server(const ServerOptions& options, std::vector<PageFile> files, Handle
         throw UsageError(
             fmt::format("{}, port {}: can't listen there ({})", options.address, options.port, error.message()));
     const std::uint16_t port = acceptor.local_endpoint().port();
-    std::vector<std::string> hosts;
-    for (const std::string& own :
-         {std::string("127.0.0.1"), std::string("localhost"), std::string("[::1]"), inUrl(address)})
-        hosts.push_back(own);
+    const std::vector<std::string> hosts{"127.0.0.1", "localhost", "[::1]", inUrl(address)};
     const std::string token = options.token.empty() ? randomToken() : options.token;
     const bool any = address.is_unspecified();
     parts_->url = fmt::format("http://{}:{}/{}/", any ? std::string("127.0.0.1") : inUrl(address), port, token);

@@ -9,12 +9,16 @@
 namespace stratum::study {
 
 struct StudyOptions {
-    std::filesystem::path folder;      ///< for NAME.csv and NAME.html; must exist
-    bool quick = false;                ///< fewer and smaller configurations
-    int threads = 0;                   ///< 0: as many as the machine has
-    std::vector<std::string> command;  ///< as typed, for the page
+    std::filesystem::path folder{};      ///< for NAME.csv and NAME.html; must exist
+    bool quick = false;                  ///< fewer and smaller configurations
+    int threads = 0;                     ///< 0: as many as the machine has
+    std::vector<std::string> command{};  ///< as typed, for the page
     /// Called after each configuration with the fraction done, 0..1. May be empty.
-    std::function<void(double)> progress;
+    std::function<void(double)> progress{};
+
+    void tell(std::size_t done, std::size_t all) const {
+        if (progress) progress(static_cast<double>(done) / static_cast<double>(all));
+    }
 };
 
 /// What a study leaves behind.

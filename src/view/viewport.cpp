@@ -137,10 +137,6 @@ void Viewport::step(const std::function<void()>& check) {
     try {
         take();
         work(check);
-    } catch (const InputError& error) {
-        fail(error.what());
-    } catch (const UsageError& error) {
-        fail(error.what());
     } catch (const std::bad_alloc&) {
         fail("there is not enough memory for this view; show fewer layers, or start the viewer with larger voxels");
     } catch (const std::exception& error) {
@@ -212,9 +208,9 @@ void Viewport::work(const std::function<void()>& check) {
             return showRough(check);
         case Stage::final:
             // Who saves has seen enough of the view, and waits.
-            return saves ? workOnSave(check) : workOnFinal(check);
+            return saves ? save(check) : workOnFinal(check);
         case Stage::idle:
-            return workOnSave(check);
+            return save(check);
         case Stage::waiting:
             return;
     }
@@ -291,6 +287,8 @@ void Viewport::showRough(const std::function<void()>& check) {
 void Viewport::workOnFinal(const std::function<void()>& check) {
     const shade::RenderOptions& options = plan_->options.render;
     if (!still_) {
+        // A picture that was saved meanwhile may have had other objects.
+        if (!scene_->has(*plan_)) scene_->makeObjects(*plan_, loadingEvents(output_.text));
         if (!full_) full_ = scene_->picture(*plan_, options.width, options.height);
         still_ = std::make_unique<StillPicture>(*full_, *plan_, fileNameOf(document_.given().source),
                                                 scene_->sharedObjects());
@@ -305,6 +303,25 @@ void Viewport::workOnFinal(const std::function<void()>& check) {
     still_.reset();
     rough_cache_.reset();
     set(Stage::idle);
+}
+
+// What can't be saved spoils no picture of the view.
+void Viewport::save(const std::function<void()>& check) {
+    const auto refuse = [this](const char* why) {
+        saving_.reset();
+        {
+            const std::lock_guard lock(mutex_);
+            if (!saves_.empty()) saves_.pop_front();
+        }
+        output_.text({{"type", "not-saved"}, {"text", why}});
+    };
+    try {
+        workOnSave(check);
+    } catch (const std::bad_alloc&) {
+        refuse("there is not enough memory for this picture; save a smaller one");
+    } catch (const std::exception& error) {
+        refuse(error.what());
+    }
 }
 
 void Viewport::workOnSave(const std::function<void()>& check) {

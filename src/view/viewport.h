@@ -63,6 +63,7 @@ private:
     void showRough(const std::function<void()>& check);
     void makeExact();
     void workOnFinal(const std::function<void()>& check);
+    void save(const std::function<void()>& check);
     void workOnSave(const std::function<void()>& check);
     void answer(const InspectMessage& inspect);
     void answer(const char* type, const std::function<nlohmann::json()>& of_document);

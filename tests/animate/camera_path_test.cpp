@@ -1,6 +1,7 @@
 #include "animate/camera_path.h"
 
 #include "base/error.h"
+#include "refusal.h"
 #include "scratch_folder.h"
 
 #include <gtest/gtest.h>
@@ -19,12 +20,7 @@ std::vector<CameraKey> read(const std::string& text) {
 }
 
 std::string complaint(const std::string& text) {
-    try {
-        (void)read(text);
-    } catch (const InputError& error) {
-        return error.what();
-    }
-    return "none";
+    return test::messageOf<InputError>([&] { (void)read(text); }, "none");
 }
 
 TEST(CameraPath, PassesThroughItsKeys) {

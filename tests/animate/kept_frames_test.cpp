@@ -1,5 +1,6 @@
 #include "animate/kept_frames.h"
 
+#include "base/atomic_file.h"
 #include "scratch_folder.h"
 
 #include <gtest/gtest.h>
@@ -65,6 +66,12 @@ TEST(KeptFrames, DamagedFramesAreMissing) {
     EXPECT_FALSE(frames.read(0));
     std::filesystem::resize_file(file, 0);
     EXPECT_FALSE(frames.read(0));
+    // It is replaced, though nothing says any more whose it was.
+    std::ofstream(file) << "damaged";
+    Replacement::guard(true);
+    EXPECT_NO_THROW(frames.keep(0, picture(3)));
+    Replacement::guard(false);
+    EXPECT_TRUE(frames.read(0));
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "base/options/json_section.h"
+#include "refusal.h"
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -78,16 +79,13 @@ TEST(PictureRequest, RefusesWhatMeansNothing) {
 TEST(PictureRequest, RefusesWhatExcludesEachOther) {
     const auto refused = [](const char* text, const char* words) {
         PictureRequest request;
-        try {
+        EXPECT_TRUE(test::refuses<InputError>(words, [&] {
             const auto json = nlohmann::json::parse(text);
             const std::string name = "options";
             JsonSection options(json, "", name);
             readPicture(options, request);
             refuseUnused(options, request);
-            ADD_FAILURE() << text;
-        } catch (const InputError& error) {
-            EXPECT_NE(std::string(error.what()).find(words), std::string::npos) << error.what();
-        }
+        })) << text;
     };
     refused(R"({"color": "red", "color_by": "layer"})", "color: expected no color_by beside it");
     refused(R"({"color": "red", "brdf": "pla-blue"})", "color: expected no brdf beside it");

@@ -19,11 +19,7 @@ inline assemble::TracingOptions coarseTracing() {
     return options;
 }
 
-inline assemble::ObjectOptions objectOf(const std::filesystem::path& path) {
-    assemble::ObjectOptions object;
-    object.vdb = path.string();
-    return object;
-}
+inline assemble::ObjectOptions objectOf(const std::filesystem::path& path) { return {.vdb = path.string()}; }
 
 inline assemble::ObjectOptions printOf(const std::string& name) { return objectOf(sourceDir() / "data/gcode" / name); }
 

@@ -1,6 +1,7 @@
 #include "assemble/scene_file.h"
 
 #include "base/error.h"
+#include "refusal.h"
 #include "scratch_folder.h"
 #include "shade/map_files.h"
 
@@ -71,12 +72,7 @@ TEST(SceneFile, SaysWhatIsWrong) {
     const test::ScratchFolder scratch;
     const auto refused = [&](const char* text, const char* word) {
         test::writeText(scratch / "s.json", text);
-        try {
-            readSceneFile(scratch / "s.json");
-            ADD_FAILURE() << text;
-        } catch (const InputError& error) {
-            EXPECT_NE(std::string(error.what()).find(word), std::string::npos) << error.what();
-        }
+        EXPECT_TRUE(test::refuses<InputError>(word, [&] { readSceneFile(scratch / "s.json"); })) << text;
     };
     refused(R"({"print": })", "line 1");
     refused(R"({})", "print");

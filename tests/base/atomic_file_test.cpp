@@ -17,17 +17,10 @@
 #include <cstddef>
 #include <filesystem>
 #include <fstream>
-#include <sstream>
 #include <string>
 
 namespace stratum {
 namespace {
-
-std::string slurp(const std::filesystem::path& path) {
-    std::ostringstream text;
-    text << std::ifstream(path).rdbuf();
-    return text.str();
-}
 
 std::size_t filesIn(const std::filesystem::path& folder) {
     return static_cast<std::size_t>(std::distance(std::filesystem::directory_iterator(folder), {}));
@@ -43,10 +36,10 @@ TEST_P(EachMaking, CommitReplacesAndLeavesNothingBeside) {
     {
         AtomicFile file(folder / "out", GetParam());
         std::ofstream(file.temporary()) << "new";
-        EXPECT_EQ(slurp(folder / "out"), "old");
+        EXPECT_EQ(test::bytesOf(folder / "out"), "old");
         file.commit();
     }
-    EXPECT_EQ(slurp(folder / "out"), "new");
+    EXPECT_EQ(test::bytesOf(folder / "out"), "new");
     EXPECT_EQ(filesIn(folder.path()), 1U);
 }
 
@@ -63,8 +56,8 @@ TEST_P(EachMaking, NamesOf255BytesCanBeWritten) {
     std::ofstream(second.temporary()) << "another";
     file.commit();
     second.commit();
-    EXPECT_EQ(slurp(folder / name), "new");
-    EXPECT_EQ(slurp(folder / other), "another");
+    EXPECT_EQ(test::bytesOf(folder / name), "new");
+    EXPECT_EQ(test::bytesOf(folder / other), "another");
     EXPECT_EQ(filesIn(folder.path()), 2U);
 }
 
@@ -91,9 +84,9 @@ TEST_P(EachMaking, TwoAtOnceTheLastOneStays) {
     }
     int status = 0;
     ::waitpid(child, &status, 0);
-    EXPECT_EQ(slurp(folder / "out"), "second");
+    EXPECT_EQ(test::bytesOf(folder / "out"), "second");
     first.commit();
-    EXPECT_EQ(slurp(folder / "out"), "first");
+    EXPECT_EQ(test::bytesOf(folder / "out"), "first");
     EXPECT_EQ(filesIn(folder.path()), 1U);
 }
 
@@ -109,7 +102,7 @@ TEST_P(EachMaking, AKilledRunLeavesNothingThatTheNextOneKeeps) {
     }
     int status = 0;
     ::waitpid(child, &status, 0);
-    EXPECT_EQ(slurp(folder / "out"), "old");
+    EXPECT_EQ(test::bytesOf(folder / "out"), "old");
     if (GetParam() == AtomicFile::Making::named) {
         EXPECT_EQ(filesIn(folder.path()), 2U);
     }
@@ -118,7 +111,7 @@ TEST_P(EachMaking, AKilledRunLeavesNothingThatTheNextOneKeeps) {
     std::ofstream(folder / ".out.mine.part") << "of somebody else";
     { const AtomicFile next(folder / "out", GetParam()); }
     EXPECT_EQ(filesIn(folder.path()), 3U);
-    EXPECT_EQ(slurp(folder / "out"), "old");
+    EXPECT_EQ(test::bytesOf(folder / "out"), "old");
 }
 
 TEST(AtomicFile, WhatARunHoldsStays) {
@@ -139,7 +132,7 @@ TEST_P(EachMaking, WithoutCommitTheOldFileStays) {
         const AtomicFile file(folder / "out", GetParam());
         std::ofstream(file.temporary()) << "half";
     }
-    EXPECT_EQ(slurp(folder / "out"), "old");
+    EXPECT_EQ(test::bytesOf(folder / "out"), "old");
     EXPECT_EQ(filesIn(folder.path()), 1U);
 }
 
@@ -155,32 +148,28 @@ TEST_P(EachMaking, WritersFailInTheDestinationsName) {
     } catch (const OutputError& error) {
         EXPECT_EQ(error.what(), out + ": full; mend " + out);
     }
-    EXPECT_EQ(slurp(folder / "out"), "old");
+    EXPECT_EQ(test::bytesOf(folder / "out"), "old");
     AtomicFile(out, GetParam()).write([](const std::filesystem::path& to) { std::ofstream(to) << "new"; });
-    EXPECT_EQ(slurp(folder / "out"), "new");
+    EXPECT_EQ(test::bytesOf(folder / "out"), "new");
     EXPECT_EQ(filesIn(folder.path()), 1U);
-}
-
-void writeText(const std::filesystem::path& path, const std::string& text) {
-    std::ofstream(path, std::ios::binary) << text;
 }
 
 TEST_P(EachMaking, ALinkStaysAndItsFileIsReplaced) {
     const test::ScratchFolder folder;
     std::filesystem::create_directory(folder / "elsewhere");
-    writeText(folder / "elsewhere/file", "old");
+    test::writeText(folder / "elsewhere/file", "old");
     std::filesystem::create_symlink("elsewhere/file", folder / "link");
     std::filesystem::create_symlink(folder / "link", folder / "second");
     std::filesystem::create_symlink("elsewhere/new", folder / "dangling");
     for (const char* name : {"link", "second", "dangling"}) {
         AtomicFile file(folder / name, GetParam());
-        writeText(file.temporary(), name);
+        test::writeText(file.temporary(), name);
         file.commit();
         EXPECT_TRUE(std::filesystem::is_symlink(folder / name)) << name;
-        EXPECT_EQ(slurp(folder / name), name);
+        EXPECT_EQ(test::bytesOf(folder / name), name);
     }
-    EXPECT_EQ(slurp(folder / "elsewhere/file"), "second");
-    EXPECT_EQ(slurp(folder / "elsewhere/new"), "dangling");
+    EXPECT_EQ(test::bytesOf(folder / "elsewhere/file"), "second");
+    EXPECT_EQ(test::bytesOf(folder / "elsewhere/new"), "dangling");
     EXPECT_EQ(filesIn(folder / "elsewhere"), 2U);
     std::filesystem::create_symlink("round", folder / "round");
     EXPECT_THROW(AtomicFile(folder / "round", GetParam()), OutputError);
@@ -194,16 +183,16 @@ protected:
 };
 
 TEST_F(Guarded, AFileOfSomebodyElseIsNotReplaced) {
-    writeText(folder_ / "theirs", "solid by hand");
-    writeText(folder_ / "ours", "binary STL by Stratum 1.0");
-    writeText(folder_ / "empty", "");
+    test::writeText(folder_ / "theirs", "solid by hand");
+    test::writeText(folder_ / "ours", "binary STL by Stratum 1.0");
+    test::writeText(folder_ / "empty", "");
     std::filesystem::create_symlink("theirs", folder_ / "link");
     EXPECT_THROW(AtomicFile(folder_ / "theirs"), UsageError);
     EXPECT_THROW(AtomicFile(folder_ / "link"), UsageError);
     EXPECT_THROW(AtomicFile::probe(folder_ / "theirs"), UsageError);
     EXPECT_THROW(Replacement::check(folder_ / "theirs"), UsageError);
     for (const char* name : {"ours", "empty", "new"}) EXPECT_NO_THROW(AtomicFile(folder_ / name)) << name;
-    EXPECT_EQ(slurp(folder_ / "theirs"), "solid by hand");
+    EXPECT_EQ(test::bytesOf(folder_ / "theirs"), "solid by hand");
     try {
         AtomicFile(folder_ / "theirs");
     } catch (const UsageError& error) {
@@ -212,7 +201,7 @@ TEST_F(Guarded, AFileOfSomebodyElseIsNotReplaced) {
 }
 
 TEST_F(Guarded, UnlessThatIsAllowed) {
-    writeText(folder_ / "theirs", "solid by hand");
+    test::writeText(folder_ / "theirs", "solid by hand");
     {
         const Replacement no(folder_ / "theirs", false);
         EXPECT_THROW(AtomicFile(folder_ / "theirs"), UsageError);
@@ -281,7 +270,7 @@ TEST(WriteFile, HoldsNoSecondCopyOfLargeBytes) {
 #ifndef STRATUM_SANITIZED  // which keeps what is freed
     EXPECT_LT(peakKilobytes(false) - before, std::size_t{32} << 10);
 #endif
-    EXPECT_EQ(slurp(folder / "out"), bytes);
+    EXPECT_EQ(test::bytesOf(folder / "out"), bytes);
     writeFile(folder / "empty", "");
     EXPECT_EQ(std::filesystem::file_size(folder / "empty"), 0U);
 }

@@ -1,6 +1,7 @@
 #include "base/input_file.h"
 
 #include "base/error.h"
+#include "refusal.h"
 #include "scratch_folder.h"
 
 #include <fcntl.h>
@@ -27,12 +28,7 @@ std::string longText() {
 }
 
 void expectChanged(const std::function<void()>& read) {
-    try {
-        read();
-        FAIL() << "was read";
-    } catch (const InputError& error) {
-        EXPECT_NE(std::string(error.what()).find("changed while it was read"), std::string::npos) << error.what();
-    }
+    EXPECT_TRUE(test::refuses<InputError>("changed while it was read", [&] { read(); }));
 }
 
 TEST(InputFile, GivesTheBytes) {

@@ -4,28 +4,19 @@ import json
 import os
 import shutil
 import subprocess
-import tempfile
 
 from png_file import png_pixels
-from run_tools import BIN, check, gcode, run
+from run_tools import BIN, Scratch, check, gcode, run
 
-FOLDER = tempfile.mkdtemp(prefix="stratum_background_")
+SCRATCH = Scratch("background")
+FOLDER, path, read = SCRATCH.folder, SCRATCH.path, SCRATCH.read
 VDBTRACE = os.path.join(BIN, "vdbtrace")
 PICTURE = [gcode("tile.gcode"), "--background", "none", "--size", "80x60", "--voxel-size", "0.1", "--quiet"]
 
 
-def path(name):
-    return os.path.join(FOLDER, name)
-
-
-def content(name):
-    with open(path(name), "rb") as file:
-        return file.read()
-
-
 def trace(name, *options):
     run(VDBTRACE, *PICTURE, "-o", path(name), *options)
-    return content(name)
+    return read(name)
 
 
 def rgba_rows(data):
@@ -48,7 +39,7 @@ check(nothing > 2000 and shadow < 20 and part > 500, f"  without a bed no shadow
 for integrator in ("ao", "normal", "phong"):
     rows = rgba_rows(trace("other.png", "--integrator", integrator))
     check(rows[0][0] == (0, 0, 0, 0) and rows[30][40][3] == 255, f"  {integrator}: nothing behind the print")
-check(trace("one.png", "--threads", "1") == content("a.png"), "  the same bytes on one thread")
+check(trace("one.png", "--threads", "1") == read("a.png"), "  the same bytes on one thread")
 rows = rgba_rows(trace("sky.png", "--env", "sky"))
 check(rows[0][0][3] == 0, "  a sky isn't seen either")
 
@@ -56,7 +47,7 @@ check(rows[0][0][3] == 0, "  a sky isn't seen either")
 options = ["--spp", "64", "--exposure", "0"]
 over = rgba_rows(trace("over.png", *options))
 run(VDBTRACE, *(word for word in PICTURE if word not in ("--background", "none")), "-o", path("whole.png"), *options)
-_, _, whole = png_pixels(content("whole.png"))
+_, _, whole = png_pixels(read("whole.png"))
 bare = whole[59][0]
 errors = [bare * (255 - pixel[3]) / 255 - row[3 * x] for row, alphas in zip(whole, over) for x, pixel in enumerate(alphas)
           if 60 < pixel[3] < 250 and max(pixel[:3]) < 6]
@@ -70,13 +61,13 @@ check(exr[:4] == b"\x76\x2f\x31\x01" and b"A\0" in exr[:400], "EXR has a channel
 for n in range(3):
     run(VDBTRACE, *PICTURE, "-o", path("shard.png"), "--shard", f"{n}/3")
 run(os.path.join(BIN, "vdbmerge"), path("merged.png"), *[path(f"shard.{n}of3.exr") for n in range(3)], "--quiet")
-check(rgba_rows(content("merged.png")) == rgba_rows(content("a.png")), "--shard: the same pixels")
+check(rgba_rows(read("merged.png")) == rgba_rows(read("a.png")), "--shard: the same pixels")
 
 with open(path("scene.json"), "w", encoding="utf-8") as file:
     json.dump({"print": gcode("tile.gcode"), "size": [80, 60], "background": "none"}, file)
 done = subprocess.run([VDBTRACE, path("scene.json"), "-o", path("scene.png"), "--voxel-size", "0.1", "--quiet"],
                       capture_output=True, text=True)
-check(done.returncode == 0 and kinds(rgba_rows(content("scene.png")))[1] > 200, f"a scene: {done.stderr.strip()}")
+check(done.returncode == 0 and kinds(rgba_rows(read("scene.png")))[1] > 200, f"a scene: {done.stderr.strip()}")
 
 
 def refused(status, *arguments, fragments):

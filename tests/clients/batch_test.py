@@ -5,31 +5,17 @@ import json
 import os
 import shutil
 import subprocess
-import tempfile
 
-from run_tools import BIN, check, gcode
+from run_tools import BIN, Scratch, check, gcode
 
-FOLDER = tempfile.mkdtemp(prefix="stratum_batch_")
+SCRATCH = Scratch("batch")
+FOLDER, path, call, does = SCRATCH.folder, SCRATCH.path, SCRATCH.call, SCRATCH.does
 GCODE2VDB = os.path.join(BIN, "gcode2vdb")
 VDBTRACE = os.path.join(BIN, "vdbtrace")
 SMALL = ["--size", "32x24", "--spp", "1"]
 COARSE = ["--voxel-size", "0.2"]
 PNG = b"\x89PNG"
 EXR = b"\x76\x2f\x31\x01"
-
-
-def path(name):
-    return os.path.join(FOLDER, name)
-
-
-def call(*command, text=True, **options):
-    return subprocess.run(command, capture_output=True, text=text, timeout=300, cwd=FOLDER, **options)
-
-
-def does(*command):
-    done = call(*command)
-    check(done.returncode == 0, f"{' '.join(map(os.path.basename, command))}: {done.returncode} {done.stderr.strip()}")
-    return done
 
 
 def names(pattern):

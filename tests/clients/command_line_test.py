@@ -5,29 +5,21 @@ import json
 import os
 import signal
 import subprocess
-import tempfile
 import time
 
-from run_tools import BIN, check, gcode
+from run_tools import BIN, Scratch, check, gcode
 
-FOLDER = tempfile.mkdtemp(prefix="stratum_cli_")
+SCRATCH = Scratch("cli")
+FOLDER, path, call = SCRATCH.folder, SCRATCH.path, SCRATCH.call
 GCODE2VDB = os.path.join(BIN, "gcode2vdb")
 VDBTRACE = os.path.join(BIN, "vdbtrace")
 TILE = gcode("tile.gcode")
-
-
-def path(name):
-    return os.path.join(FOLDER, name)
 
 
 def make(name, content):
     with open(path(name), "wb") as file:
         file.write(content if isinstance(content, bytes) else content.encode())
     return path(name)
-
-
-def call(*command):
-    return subprocess.run(command, capture_output=True, text=True, errors="replace", timeout=300, cwd=FOLDER)
 
 
 def refused(command, status, *fragments):

@@ -5,19 +5,15 @@ import json
 import os
 import struct
 import subprocess
-import tempfile
 
 from packed_gcode import bgcode, gx, zipped
-from run_tools import BIN, check, gcode
+from run_tools import BIN, Scratch, check, gcode
 
-FOLDER = tempfile.mkdtemp(prefix="stratum_containers_")
+SCRATCH = Scratch("containers")
+FOLDER, path = SCRATCH.folder, SCRATCH.path
 GCODE2VDB = os.path.join(BIN, "gcode2vdb")
 with open(gcode("tile.gcode"), "rb") as file:
     TEXT = file.read()
-
-
-def path(name):
-    return os.path.join(FOLDER, name)
 
 
 def call(*arguments, stdin=b""):

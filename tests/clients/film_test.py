@@ -7,28 +7,20 @@ import os
 import shutil
 import signal
 import subprocess
-import tempfile
 import time
 
-from run_tools import BIN, check, gcode, skip_without
+from run_tools import BIN, Scratch, check, gcode, skip_without
 
 skip_without(("ffmpeg", "ffprobe", "chromium", "chromedriver"), ("selenium",))
 
 from chromium import browser
 
-FOLDER = tempfile.mkdtemp(prefix="stratum_film_")
 VDBTRACE = os.path.join(BIN, "vdbtrace")
+SCRATCH = Scratch("film", VDBTRACE)
+FOLDER, path, read, call = SCRATCH.folder, SCRATCH.path, SCRATCH.read, SCRATCH.call
 PART = shutil.copy(gcode("tile.gcode"), os.path.join(FOLDER, "part.gcode"))
 SMALL = ["--size", "64x48", "--spp", "1", "--quiet"]
 QUICK = [*SMALL, "--voxels-per-layer", "2"]
-
-
-def path(name):
-    return os.path.join(FOLDER, name)
-
-
-def call(*arguments, **others):
-    return subprocess.run([VDBTRACE, *arguments], capture_output=True, text=True, timeout=300, cwd=FOLDER, **others)
 
 
 def film(name, *options, source="part.gcode"):
@@ -37,11 +29,6 @@ def film(name, *options, source="part.gcode"):
     check(done.returncode == 0, f"{name} {' '.join(options)}: exit {done.returncode}: {done.stderr.strip()}")
     check(not os.path.exists(path(name + ".frames")), f"{name}: no frames are left")
     return json.loads(done.stdout)
-
-
-def read(name):
-    with open(path(name), "rb") as file:
-        return file.read()
 
 
 def probe(name):

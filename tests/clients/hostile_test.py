@@ -4,13 +4,13 @@ streams, too little memory, outputs that are somebody else's."""
 import os
 import shutil
 import subprocess
-import tempfile
 import threading
 import time
 
-from run_tools import BIN, check, gcode
+from run_tools import BIN, Scratch, check, gcode
 
-FOLDER = tempfile.mkdtemp(prefix="stratum_hostile_")
+SCRATCH = Scratch("hostile")
+FOLDER, path, read = SCRATCH.folder, SCRATCH.path, SCRATCH.read
 GCODE2VDB = os.path.join(BIN, "gcode2vdb")
 VDBTRACE = os.path.join(BIN, "vdbtrace")
 VDBMERGE = os.path.join(BIN, "vdbmerge")
@@ -18,10 +18,6 @@ TILE = gcode("tile.gcode")
 COARSE = ["--voxel-size", "0.2"]
 SMALL = ["--size", "64x48", "--spp", "1"]
 TRIALS = int(os.environ.get("STRATUM_HOSTILE_TRIALS", "8"))
-
-
-def path(name):
-    return os.path.join(FOLDER, name)
 
 
 def call(*command, **options):
@@ -33,11 +29,6 @@ def does(*command, **options):
     done = call(*command, **options)
     check(done.returncode == 0, f"{' '.join(map(os.path.basename, command))}: {done.returncode} {done.stderr}")
     return done
-
-
-def read(name):
-    with open(path(name), "rb") as file:
-        return file.read()
 
 
 def write(name, data):

@@ -16,9 +16,10 @@ import time
 import zipfile
 
 from packed_gcode import bgcode, gx, zipped
-from run_tools import BIN, SOURCE, check, gcode, write_box
+from run_tools import BIN, SOURCE, Scratch, check, gcode, write_box
 
-FOLDER = tempfile.mkdtemp(prefix="stratum_mutation_")
+SCRATCH = Scratch("mutation")
+FOLDER, path = SCRATCH.folder, SCRATCH.path
 KEPT = os.environ.get("STRATUM_FINDINGS", os.path.join(tempfile.gettempdir(), "stratum_findings"))
 COUNT = int(os.environ.get("STRATUM_MUTATIONS", "2"))
 SEED = int(os.environ.get("STRATUM_MUTATION_SEED", "1"))
@@ -32,10 +33,6 @@ TOOL = {name: os.path.join(BIN, name) for name in ("gcode2vdb", "vdbtrace", "vdb
 SMALL = ["--size", "24x18", "--spp", "1", "--no-denoise"]
 COARSE = ["--voxel-size", "0.4", "--force"]
 NUMBERS = [b"0", b"-1", b"1e30", b"-1e30", b"1e308", b"nan", b"inf", b"1e-30", b"4294967296", b"-2147483649", b"0.000001", b"99999"]
-
-
-def path(name):
-    return os.path.join(FOLDER, name)
 
 
 def read(name):

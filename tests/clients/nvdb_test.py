@@ -5,18 +5,14 @@ import re
 import shutil
 import subprocess
 import sys
-import tempfile
 
-from run_tools import BIN, check, gcode, run, skip_without
+from run_tools import BIN, Scratch, check, gcode, run, skip_without
 
 skip_without(("nanovdb_validate", "nanovdb_print", "nanovdb_convert"))
 
-FOLDER = tempfile.mkdtemp(prefix="stratum_nvdb_")
+SCRATCH = Scratch("nvdb")
+FOLDER, path = SCRATCH.folder, SCRATCH.path
 GCODE2VDB = os.path.join(BIN, "gcode2vdb")
-
-
-def path(name):
-    return os.path.join(FOLDER, name)
 
 
 def grids(name):
@@ -37,6 +33,8 @@ for compression in ("blosc", "zip", "none"):
     told = run("nanovdb_validate", "-v", path("print.nvdb"))
     check(told.count(": passed") == 3 and "fail" not in told.lower(), f"{compression}: nanovdb_validate passes three grids")
     check(grids("print.nvdb") == grids("theirs.nvdb"), f"  as nanovdb_convert makes them of the .vdb: {grids('print.nvdb')}")
+
+SCRATCH.does(GCODE2VDB, gcode("tile.gcode"), "-o", "print.nvdb", "--quiet", "--voxel-size", "0.1")  # replaces its own without --force
 
 convert("half.nvdb", "--precision", "half")
 check(run("nanovdb_validate", "-v", path("half.nvdb")).count(": passed") == 1, "half: passes")

@@ -2,40 +2,16 @@
 
 import os
 import shutil
-import subprocess
-import tempfile
 
-from run_tools import BIN, check, gcode
+from run_tools import BIN, Scratch, check, gcode
 
-FOLDER = tempfile.mkdtemp(prefix="stratum_options_")
+SCRATCH = Scratch("options")
+FOLDER, path, call, does, contents = SCRATCH.folder, SCRATCH.path, SCRATCH.call, SCRATCH.does, SCRATCH.contents
 GCODE2VDB = os.path.join(BIN, "gcode2vdb")
 VDBTRACE = os.path.join(BIN, "vdbtrace")
 VDBSTUDY = os.path.join(BIN, "vdbstudy")
 SMALL = ["--size", "32x24", "--spp", "1"]
 COARSE = ["--voxel-size", "0.2"]
-
-
-def path(name):
-    return os.path.join(FOLDER, name)
-
-
-def call(*command, **options):
-    return subprocess.run(command, capture_output=True, text=True, errors="replace", timeout=300, cwd=FOLDER, **options)
-
-
-def contents():
-    found = {}
-    for name in os.listdir(FOLDER):
-        if os.path.isfile(path(name)):
-            with open(path(name), "rb") as file:
-                found[name] = file.read()
-    return found
-
-
-def does(*command):
-    done = call(*command)
-    check(done.returncode == 0, f"{' '.join(map(os.path.basename, command))}: {done.returncode} {done.stderr.strip()}")
-    return done
 
 
 def refused(command, status, *fragments):

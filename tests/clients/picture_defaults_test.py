@@ -4,22 +4,14 @@ import json
 import os
 import shutil
 import subprocess
-import tempfile
 
-from run_tools import BIN, check, gcode
+from run_tools import BIN, Scratch, check, gcode
 
-FOLDER = tempfile.mkdtemp(prefix="stratum_defaults_")
+SCRATCH = Scratch("defaults")
+FOLDER, path, call = SCRATCH.folder, SCRATCH.path, SCRATCH.call
 GCODE2VDB = os.path.join(BIN, "gcode2vdb")
 VDBTRACE = os.path.join(BIN, "vdbtrace")
 SMALL = ["--size", "64x48", "--spp", "1", "--quiet"]
-
-
-def path(name):
-    return os.path.join(FOLDER, name)
-
-
-def call(*command):
-    return subprocess.run(command, capture_output=True, text=True, timeout=300, cwd=FOLDER)
 
 
 def report(source, *options, output="p.png"):

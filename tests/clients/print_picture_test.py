@@ -4,24 +4,15 @@ import gzip
 import json
 import os
 import shutil
-import subprocess
-import tempfile
 
-from run_tools import BIN, check, gcode
+from run_tools import BIN, Scratch, check, gcode
 
-FOLDER = tempfile.mkdtemp(prefix="stratum_print_picture_")
+SCRATCH = Scratch("print_picture")
+FOLDER, path, call = SCRATCH.folder, SCRATCH.path, SCRATCH.call
 GCODE2VDB = os.path.join(BIN, "gcode2vdb")
 VDBTRACE = os.path.join(BIN, "vdbtrace")
 GEAR = shutil.copy(gcode("gear.gcode"), os.path.join(FOLDER, "part"))
 SMALL = ["--size", "200x150", "--quiet"]
-
-
-def path(name):
-    return os.path.join(FOLDER, name)
-
-
-def call(*command):
-    return subprocess.run(command, capture_output=True, text=True, timeout=300, cwd=FOLDER)
 
 
 def picture(source, name, *options):

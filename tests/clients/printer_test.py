@@ -6,20 +6,16 @@ import json
 import os
 import random
 import subprocess
-import tempfile
 
-from run_tools import BIN, check, gcode
+from run_tools import BIN, Scratch, check, gcode
 
-FOLDER = tempfile.mkdtemp(prefix="stratum_printer_")
+SCRATCH = Scratch("printer")
+FOLDER, path = SCRATCH.folder, SCRATCH.path
 TILE = gcode("tile.gcode")
 # Two layers, for what needs no print.
 TINY = os.path.join(FOLDER, "tiny.gcode")
 with open(TINY, "w", encoding="ascii") as file:
     file.write("M83\nG1 Z.2 F600\nG1 X20 E1\nG1 Y20 E1\nG1 Z.4\nG1 X0 E1\n")
-
-
-def path(name):
-    return os.path.join(FOLDER, name)
 
 
 def make(name, text):

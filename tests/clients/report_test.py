@@ -5,27 +5,13 @@ import os
 import re
 import shutil
 import subprocess
-import tempfile
 
-from run_tools import BIN, check, gcode
+from run_tools import BIN, Scratch, check, gcode
 
-FOLDER = tempfile.mkdtemp(prefix="stratum_report_")
 GCODE2VDB = os.path.join(BIN, "gcode2vdb")
+SCRATCH = Scratch("report", GCODE2VDB)
+FOLDER, path, call, does = SCRATCH.folder, SCRATCH.path, SCRATCH.call, SCRATCH.does
 COARSE = ["--voxel-size", "0.1", "--quiet"]
-
-
-def path(name):
-    return os.path.join(FOLDER, name)
-
-
-def call(*options):
-    return subprocess.run([GCODE2VDB, *options], capture_output=True, text=True, timeout=300, cwd=FOLDER)
-
-
-def does(*options):
-    done = call(*options)
-    check(done.returncode == 0, f"{' '.join(options)}: {done.returncode} {done.stderr.strip()}")
-    return done
 
 
 def report(name):

@@ -74,3 +74,34 @@ def check(condition, text):
     if not condition:
         sys.exit("FAILED: " + text)
     print("ok: " + text)
+
+
+class Scratch:
+    """A folder of the test's own, and what is done in it. `tool`: words in front of each call."""
+
+    def __init__(self, name, *tool):
+        self.kept = tempfile.TemporaryDirectory(prefix=f"stratum_{name}_")  # goes with the process
+        self.folder = self.kept.name
+        self.tool = tool
+
+    def path(self, name):
+        return os.path.join(self.folder, name)
+
+    def read(self, name):
+        with open(self.path(name), "rb") as file:
+            return file.read()
+
+    def same(self, one, other):
+        return self.read(one) == self.read(other)
+
+    def contents(self):
+        return {name: self.read(name) for name in os.listdir(self.folder) if os.path.isfile(self.path(name))}
+
+    def call(self, *command, text=True, **options):
+        return subprocess.run([*self.tool, *command], capture_output=True, text=text, errors="replace" if text else None,
+                              timeout=300, cwd=self.folder, **options)
+
+    def does(self, *command, **options):
+        done = self.call(*command, **options)
+        check(done.returncode == 0, f"{' '.join(map(os.path.basename, command))}: {done.returncode} {done.stderr.strip()}")
+        return done

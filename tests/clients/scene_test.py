@@ -2,34 +2,20 @@
 
 import json
 import os
-import subprocess
-import tempfile
 import zlib
 
-from run_tools import BIN, check, gcode
+from run_tools import BIN, Scratch, check, gcode
 
-FOLDER = tempfile.mkdtemp(prefix="stratum_scene_")
+SCRATCH = Scratch("scene")
+FOLDER, path, call, read = SCRATCH.folder, SCRATCH.path, SCRATCH.call, SCRATCH.read
 VDBTRACE = os.path.join(BIN, "vdbtrace")
 SMALL = ("--size", "64x48", "--spp", "1", "--quiet")
-
-
-def path(name):
-    return os.path.join(FOLDER, name)
-
-
-def call(*command):
-    return subprocess.run(command, capture_output=True, text=True, timeout=300, cwd=FOLDER)
-
-
-def bytes_of(name):
-    with open(path(name), "rb") as file:
-        return file.read()
 
 
 def trace(name, *options):
     done = call(VDBTRACE, *options, *SMALL, "-o", path(name))
     check(done.returncode == 0, f"{name}: {done.stderr.strip() or 'drawn'}")
-    return bytes_of(name)
+    return read(name)
 
 
 def scene(name, **keys):
@@ -94,7 +80,7 @@ both = scene("both.json", objects=[
     {"sdf": {"torus": {"center": [130, 105, 8], "radius": 3, "tube": 1}}, "voxel_size": 0.1}])
 trace("both.png", both)
 trace("both_smooth.png", both, "--normals", "smooth")
-check(bytes_of("both.png") != bytes_of("both_smooth.png"), "smooth normals change the picture")
+check(read("both.png") != read("both_smooth.png"), "smooth normals change the picture")
 check(trace("t1.exr", both, "--threads", "1") == trace("t2.exr", both, "--threads", "2"), "the same bytes for 1 and 2 threads")
 
 pictures = {trace(f"by_{name}.exr", "tile.vdb", "--color-by", name) for name in ("layer", "feature", "speed", "color")}
@@ -133,7 +119,7 @@ refused(2, "and the objects have 2", scene("several.json", objects=[
 refused(2, "each place has a colour of its own", "tile.vdb", "--color-by", "layer", "--write-brdf", path("layer.binary"))
 trace("reds.png", reds, "--write-brdf", path("reds.binary"))
 trace("asked.png", "tile.vdb", "--brdf", "lambert:0.8,0.1,0.1", "--write-brdf", path("asked.binary"))
-check(bytes_of("reds.binary") == bytes_of("asked.binary"), "the only object's material is written")
+check(read("reds.binary") == read("asked.binary"), "the only object's material is written")
 refused(2, "has a colour of its own", "tile.vdb", "--color-by", "tool", "--brdf", "pla-blue")
 refused(2, "--view top: expected no --eye beside it", "tile.vdb", "--view", "top", "--eye", "60,-60,30")
 refused(2, "--color red: expected no --color-by beside it", "tile.vdb", "--color", "red", "--color-by", "layer")

@@ -5,12 +5,12 @@ import re
 import shutil
 import signal
 import subprocess
-import tempfile
 import time
 
-from run_tools import BIN, SOURCE, check, gcode
+from run_tools import BIN, SOURCE, Scratch, check, gcode
 
-FOLDER = tempfile.mkdtemp(prefix="stratum_shard_")
+SCRATCH = Scratch("shard")
+FOLDER, path, call, does, contents, same = SCRATCH.folder, SCRATCH.path, SCRATCH.call, SCRATCH.does, SCRATCH.contents, SCRATCH.same
 VDBTRACE = os.path.join(BIN, "vdbtrace")
 VDBMERGE = os.path.join(BIN, "vdbmerge")
 GCODE2VDB = os.path.join(BIN, "gcode2vdb")
@@ -27,29 +27,6 @@ LONG_RUN = "STRATUM_LONG" in os.environ
 SLURM = {name: value for name, value in os.environ.items() if not name.startswith("SLURM_")}
 
 
-def path(name):
-    return os.path.join(FOLDER, name)
-
-
-def call(*command, env=None):
-    return subprocess.run(command, capture_output=True, text=True, errors="replace", timeout=300, cwd=FOLDER, env=env)
-
-
-def contents():
-    found = {}
-    for name in os.listdir(FOLDER):
-        with open(path(name), "rb") as file:
-            found[name] = file.read()
-    return found
-
-
-def does(*command, env=None):
-    done = call(*command, env=env)
-    if done.returncode != 0:
-        check(False, f"{' '.join(command)}: exit {done.returncode}: {done.stderr.strip()}")
-    return done
-
-
 def refused(status, fragments, *command, env=None):
     before = contents()
     done = call(*command, env=env)
@@ -59,11 +36,6 @@ def refused(status, fragments, *command, env=None):
     for fragment in fragments:
         check(fragment in text, f"  says {fragment!r}")
     check(contents() == before, "  and every file is as it was")
-
-
-def same(one, other):
-    with open(path(one), "rb") as a, open(path(other), "rb") as b:
-        return a.read() == b.read()
 
 
 def parts(stem, count, ending="exr"):

@@ -9,11 +9,10 @@ import signal
 import socket
 import subprocess
 import sys
-import tempfile
 import time
 
 from process_tree import adopt_orphans, descendants, end_descendants
-from run_tools import BIN, SOURCE, check, gcode, run
+from run_tools import BIN, SOURCE, Scratch, check, gcode, run
 
 NEEDED = ("munged", "slurmctld", "slurmd", "sbatch", "squeue", "scontrol", "scancel")
 SYSTEM = os.pathsep.join((os.environ.get("PATH", ""), "/usr/sbin", "/sbin"))
@@ -22,7 +21,8 @@ if missing:
     print(f"skipped: {', '.join(missing)}: not installed; scripts/packages.sh has the packages")
     sys.exit(77)  # SKIP_RETURN_CODE of CTest
 
-FOLDER = tempfile.mkdtemp(prefix="stratum_slurm_")
+SCRATCH = Scratch("slurm")
+FOLDER, path, same = SCRATCH.folder, SCRATCH.path, SCRATCH.same
 # munged refuses a socket in a folder that others may not enter.
 os.chmod(FOLDER, 0o755)
 SCRIPTS = os.path.join(SOURCE, "scripts", "slurm")
@@ -35,10 +35,6 @@ TASKS = 8
 LONGEST = 180  # seconds that anything is waited for; it takes a tenth of that
 # A requeued job waits for as long as a credential of its first run is valid: two minutes, if nothing is said.
 CREDENTIAL = 6
-
-
-def path(name):
-    return os.path.join(FOLDER, name)
 
 
 def free_ports(count):
@@ -126,11 +122,6 @@ def finished(job, count=1):
 
 def submit(*options):
     return ask("sbatch", "--parsable", "--cpus-per-task=1", "--output", path("job.%j.out"), *options)
-
-
-def same(one, other):
-    with open(path(one), "rb") as a, open(path(other), "rb") as b:
-        return a.read() == b.read()
 
 
 def kill_program(task):

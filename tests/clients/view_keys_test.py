@@ -3,7 +3,6 @@
 import os
 import shutil
 import subprocess
-import tempfile
 
 from run_tools import BIN, check, gcode, run, skip_without
 
@@ -12,13 +11,11 @@ skip_without(("chromium", "chromedriver"), ("selenium",))
 from selenium.webdriver.common.action_chains import ActionChains
 from selenium.webdriver.common.by import By
 
-from chromium import browser
 from program_counts import Program
 from viewer_page import ViewerPage
 
-FOLDER = tempfile.mkdtemp(prefix="stratum_keys_")
-page = browser(f"{FOLDER}/profile", 900, 640, 400)
-viewer = ViewerPage(page)
+viewer = ViewerPage("keys", 900, 640)
+page, FOLDER = viewer.page, viewer.folder
 js, until, drawn, set_slider = viewer.js, viewer.until, viewer.drawn, viewer.set_slider
 LAYERS = Program(gcode("tile.gcode")).layers
 
@@ -41,7 +38,7 @@ def at_layers(low, high, text):
 
 def settled():
     """The state is in the address, as a view at rest has it."""
-    js("return new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))")
+    viewer.frames()
     return js("return JSON.parse(decodeURIComponent(location.hash.slice(1)) || '{}')")
 
 
@@ -258,5 +255,4 @@ try:
     double_click()
     nozzle()
 finally:
-    page.quit()
-    shutil.rmtree(FOLDER, ignore_errors=True)
+    viewer.close()

@@ -1,19 +1,15 @@
 """Travels, marks, layers and single moves on the viewer's page, in headless Chromium, against the program itself."""
 
 import json
-import shutil
-import tempfile
 from urllib.parse import quote
 
 from run_tools import check, gcode, skip_without
 
 skip_without(("chromium", "chromedriver"), ("selenium",))
 
-from chromium import browser
 from program_counts import Program
 from viewer_page import COLORS, ViewerPage, screen
 
-FOLDER = tempfile.mkdtemp(prefix="stratum_moves_")
 # Counts messages of web sockets by type.
 COUNT = """window.told = {}; window.asked = {};
 const Plain = WebSocket;
@@ -28,16 +24,16 @@ window.WebSocket = class extends Plain {
 window.WebSocket.OPEN = 1;"""
 
 
-page = browser(f"{FOLDER}/profile", 760, 560, 400)
+viewer = ViewerPage("moves", 760, 560)
+page = viewer.page
 page.execute_cdp_cmd("Page.addScriptToEvaluateOnNewDocument", {"source": COUNT})
-viewer = ViewerPage(page)
 js, until, drawn, toggle, set_slider = viewer.js, viewer.until, viewer.drawn, viewer.toggle, viewer.set_slider
 
 
 def counted(name):
     """What the page says beside a toggle that is on."""
     until("window.vdbviewCounts()", "the moves have come")
-    js("return new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))")
+    viewer.frames()
     text = js("return document.querySelector(`#also input[value='${arguments[0]}']`).parentElement.querySelector('output').textContent", name)
     return int(text)
 
@@ -231,5 +227,4 @@ try:
     phone()
     refusals()
 finally:
-    page.quit()
-    shutil.rmtree(FOLDER, ignore_errors=True)
+    viewer.close()

@@ -2,8 +2,6 @@
 
 import json
 import os
-import shutil
-import tempfile
 import time
 from math import cos, radians, sin
 from urllib.parse import quote
@@ -12,10 +10,8 @@ from run_tools import check, corpus, gcode, skip_without
 
 skip_without(("chromium", "chromedriver"), ("selenium",))
 
-from chromium import browser
 from viewer_page import ViewerPage
 
-FOLDER = tempfile.mkdtemp(prefix="stratum_own_")
 # Counts what web sockets carry.
 COUNT = """window.carried = 0;
 const Plain = WebSocket;
@@ -84,9 +80,9 @@ const averaged = (fine) => {
 })().catch((error) => done({ error: String(error) }));"""
 
 
-page = browser(f"{FOLDER}/profile", 500, 500, 400)
+viewer = ViewerPage("own", 500, 500)
+page, FOLDER = viewer.page, viewer.folder
 page.execute_cdp_cmd("Page.addScriptToEvaluateOnNewDocument", {"source": COUNT})
-viewer = ViewerPage(page)
 js, until, drawn_here = viewer.js, viewer.until, viewer.drawn_here
 
 
@@ -406,5 +402,4 @@ try:
         agrees("ripple vase", {"eye": [300, -200, 150], "look_at": [62, 24, 20], "fov": 1.5}, path=thin, least=0.99)
     streams()
 finally:
-    page.quit()
-    shutil.rmtree(FOLDER, ignore_errors=True)
+    viewer.close()

@@ -1,21 +1,17 @@
 """The viewer's search, head, scale and bed, in headless Chromium, against the program itself."""
 
 import os
-import shutil
-import tempfile
 
 from run_tools import check, gcode, skip_without
 
 skip_without(("chromium", "chromedriver"), ("selenium",))
 
-from chromium import browser
 from program_counts import Program
 from viewer_page import COLORS, ViewerPage, screen
 
-FOLDER = tempfile.mkdtemp(prefix="stratum_panel_")
-page = browser(f"{FOLDER}/profile", 900, 640, 400)
-viewer = ViewerPage(page)
-js, until, drawn, set_slider = viewer.js, viewer.until, viewer.drawn, viewer.set_slider
+viewer = ViewerPage("panel", 900, 640)
+page, FOLDER = viewer.page, viewer.folder
+js, until, drawn, frames, set_slider = viewer.js, viewer.until, viewer.drawn, viewer.frames, viewer.set_slider
 
 
 def find(what, text, back=False):
@@ -23,10 +19,6 @@ def find(what, text, back=False):
           set('find-what', arguments[0]); set('find-for', arguments[1]);
           document.getElementById(arguments[2] ? 'find-back' : 'find').dispatchEvent(new Event(arguments[2] ? 'click' : 'submit', { cancelable: true }));""",
        what, str(text), back)
-
-
-def frames():
-    js("return new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))")
 
 
 def told(text):
@@ -241,5 +233,4 @@ try:
     excluded()
     two_prints()
 finally:
-    page.quit()
-    shutil.rmtree(FOLDER, ignore_errors=True)
+    viewer.close()

@@ -3,11 +3,13 @@
 import contextlib
 import json
 import os
+import shutil
 import subprocess
+import tempfile
 from math import radians, tan
 from urllib.parse import quote
 
-from chromium import until
+from chromium import browser, until
 from run_tools import BIN
 
 # Whether the picture that the page draws has a colour within a pixel of each of these places, 0 to 1.
@@ -44,8 +46,13 @@ def screen(point, camera, aspect):
 
 
 class ViewerPage:
-    def __init__(self, page):
-        self.page = page
+    def __init__(self, name, width, height):
+        self.folder = tempfile.mkdtemp(prefix=f"stratum_{name}_")
+        self.page = browser(f"{self.folder}/profile", width, height, 400)
+
+    def close(self):
+        self.page.quit()
+        shutil.rmtree(self.folder, ignore_errors=True)
 
     def js(self, text, *arguments):
         return self.page.execute_script(text, *arguments)
@@ -65,6 +72,10 @@ class ViewerPage:
                     self.page.get("about:blank")
                 finally:
                     process.terminate()
+
+    def frames(self):
+        """Waits for two."""
+        self.js("return new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))")
 
     def drawn_here(self):
         self.until("document.body.dataset.moving === 'own'", "the page draws what moves")

@@ -3,6 +3,7 @@
 #include "shapes.h"
 
 #include "base/error.h"
+#include "refusal.h"
 
 #include <gtest/gtest.h>
 #include <glm/geometric.hpp>
@@ -129,12 +130,7 @@ TEST(NearestOn, IsTheNearestPointOfTheTriangle) {
 }
 
 std::string refusalOf(TriangleMesh mesh) {
-    try {
-        const ClosedModel model(std::move(mesh), "part.stl");
-    } catch (const InputError& error) {
-        return error.what();
-    }
-    return "";
+    return test::messageOf<InputError>([&] { const ClosedModel model(std::move(mesh), "part.stl"); });
 }
 
 TEST(ClosedModel, OpenAndInsideOutOnesAreRefused) {

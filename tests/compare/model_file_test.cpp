@@ -1,5 +1,6 @@
 #include "compare/model_file.h"
 
+#include "refusal.h"
 #include "scratch_folder.h"
 #include "shapes.h"
 
@@ -9,8 +10,8 @@
 #include <gtest/gtest.h>
 #include <zip.h>
 
+#include <algorithm>
 #include <cstring>
-#include <fstream>
 #include <string>
 #include <utility>
 
@@ -19,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-void writeText(const fs::path& path, const std::string& text) { std::ofstream(path, std::ios::binary) << text; }
+using test::writeText;
 
 std::string asObj(const TriangleMesh& mesh) {
     std::string text;
@@ -49,12 +50,7 @@ std::string asBinaryStl(const TriangleMesh& mesh) {
 }
 
 std::string refusalOf(const fs::path& path) {
-    try {
-        readModel(path);
-    } catch (const InputError& error) {
-        return error.what();
-    }
-    return "";
+    return test::messageOf<InputError>([&] { readModel(path); });
 }
 
 TEST(ModelFile, ReadsObjAndStl) {
@@ -70,9 +66,9 @@ TEST(ModelFile, ReadsObjAndStl) {
     }
 }
 
-// A package with a model whose numbers are in this unit; empty: not stated.
-void write3mf(const fs::path& path, const TriangleMesh& mesh, const std::string& unit) {
-    std::string model = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<model ";
+// A package with a model whose numbers are in this unit; empty: not stated. `item`: more of what is built.
+void write3mf(const fs::path& path, const TriangleMesh& mesh, const std::string& unit, const std::string& item = "") {
+    std::string model = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<!-- it was a <model unit=\"foot\"> -->\n<model ";
     if (!unit.empty()) model += "unit=\"" + unit + "\" ";
     model +=
         "xml:lang=\"en-US\" xmlns=\"http://schemas.microsoft.com/3dmanufacturing/core/2015/02\"><resources>"
@@ -84,7 +80,7 @@ void write3mf(const fs::path& path, const TriangleMesh& mesh, const std::string&
     for (const Triangle& t : mesh.triangles)
         model += "<triangle v1=\"" + std::to_string(t[0]) + "\" v2=\"" + std::to_string(t[1]) + "\" v3=\"" +
                  std::to_string(t[2]) + "\"/>";
-    model += "</triangles></mesh></object></resources><build><item objectid=\"1\"/></build></model>";
+    model += "</triangles></mesh></object></resources><build><item objectid=\"1\" " + item + "/></build></model>";
     const std::string relations =
         "<?xml version=\"1.0\"?><Relationships xmlns=\"http://schemas.openxmlformats.org/package/2006/relationships\">"
         "<Relationship Target=\"/3D/3dmodel.model\" Id=\"rel0\" "
@@ -111,6 +107,20 @@ TEST(ModelFile, TheUnitOfA3mfIsThatOfItsNumbers) {
     }
     write3mf(folder / "box.3mf", box, "cubit");
     EXPECT_NE(refusalOf(folder / "box.3mf").find("cubit"), std::string::npos);
+}
+
+// The core specification of 3MF has the transform in rows, the offset last.
+TEST(ModelFile, ItemsOfA3mfLieWhereTheirTransformsSay) {
+    const test::ScratchFolder folder;
+    const auto built = [&](const std::string& transform) {
+        write3mf(folder / "box.3mf", test::boxModel({0, 0, 0}, {1, 2, 3}), "", "transform=\"" + transform + "\"");
+        return readModel(folder / "box.3mf");
+    };
+    EXPECT_NEAR(ClosedModel(built("-1 0 0 0 1 0 0 0 1 10 0 0"), "mirrored").volume(), 6, 1e-6);
+    EXPECT_NEAR(ClosedModel(built("0 2 0 -2 0 0 0 0 2 10 20 30"), "turned").volume(), 48, 1e-5);
+    double least = 1e9;
+    for (const glm::dvec3& p : built("-1 0 0 0 1 0 0 0 1 10 0 0").points) least = std::min(least, p.x);
+    EXPECT_NEAR(least, 9, 1e-6);
 }
 
 TEST(ModelFile, WhatIsNoModelIsRefused) {

@@ -1,6 +1,7 @@
 #include "compare/reader_process.h"
 
 #include "base/error.h"
+#include "refusal.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -17,12 +18,7 @@ namespace stratum::compare {
 namespace {
 
 std::string refusalOf(const std::function<std::string()>& read) {
-    try {
-        (void)readInProcess("a.3mf", read);
-    } catch (const InputError& error) {
-        return error.what();
-    }
-    return "was read";
+    return test::messageOf<InputError>([&] { (void)readInProcess("a.3mf", read); }, "was read");
 }
 
 TEST(ReaderProcess, GivesTheBytes) {

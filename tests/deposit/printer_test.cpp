@@ -4,6 +4,7 @@
 #include "base/input_file.h"
 #include "corpus.h"
 #include "deposit/read_print.h"
+#include "refusal.h"
 #include "scratch_folder.h"
 
 #include <gtest/gtest.h>
@@ -32,12 +33,8 @@ TEST(Printer, ReadsSections) {
 
 TEST(Printer, RefusesOtherSections) {
     for (const char* text : {"", "%", "-1", "-5%", "101%", "1e300", "nan", "inf", "0.05mm", "round", "50%%", "5 %"}) {
-        try {
-            cornerOf(text);
-            ADD_FAILURE() << "'" << text << "' was taken";
-        } catch (const UsageError& error) {
-            EXPECT_NE(std::string(error.what()).find("corner radius in mm"), std::string::npos);
-        }
+        EXPECT_TRUE(test::refuses<UsageError>("corner radius in mm", [&] { cornerOf(text); }))
+            << "'" << text << "' was taken";
     }
 }
 

@@ -6,14 +6,14 @@
 #include <gtest/gtest.h>
 
 #include <cstring>
-#include <fstream>
-#include <iterator>
 #include <sstream>
 #include <string>
 #include <vector>
 
 namespace stratum::exporter {
 namespace {
+
+using test::bytesOf;
 
 // A pyramid: one quad below, four triangles.
 SurfaceMesh pyramid() {
@@ -22,11 +22,6 @@ SurfaceMesh pyramid() {
     constexpr std::uint32_t none = SurfaceMesh::kNone;
     mesh.faces = {{3, 2, 1, 0}, {0, 1, 4, none}, {1, 2, 4, none}, {2, 3, 4, none}, {3, 0, 4, none}};
     return mesh;
-}
-
-std::string bytesOf(const std::filesystem::path& path) {
-    std::ifstream file(path, std::ios::binary);
-    return {std::istreambuf_iterator<char>(file), {}};
 }
 
 template <typename T>

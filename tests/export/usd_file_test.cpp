@@ -5,8 +5,6 @@
 
 #include <gtest/gtest.h>
 
-#include <fstream>
-#include <sstream>
 #include <string>
 
 namespace stratum::exporter {
@@ -30,12 +28,6 @@ openvdb::GridPtrVec print() {
     return {surface, named<openvdb::Int32Grid>("layer", transform), named<openvdb::Vec3SGrid>("color", transform)};
 }
 
-std::string written(const std::filesystem::path& path) {
-    std::ostringstream text;
-    text << std::ifstream(path).rdbuf();
-    return text.str();
-}
-
 /// The part between the braces that follow `def ... "name"`.
 std::string primOf(const std::string& text, const std::string& name) {
     const std::size_t begin = text.find("def OpenVDBAsset \"" + name + "\"");
@@ -56,7 +48,7 @@ protected:
 
 TEST_F(UsdFile, NamesEveryGridOfTheFileBesideIt) {
     writeUsda(print(), folder_ / "part.vdb", folder_ / "part.usda");
-    const std::string text = written(folder_ / "part.usda");
+    const std::string text = test::bytesOf(folder_ / "part.usda");
     EXPECT_TRUE(text.starts_with("#usda 1.0\n"));
     for (const std::string name : {"surface", "layer", "color"}) {
         EXPECT_NE(text.find("rel field:" + name + " = </print/" + name + ">"), std::string::npos) << name;
@@ -70,7 +62,7 @@ TEST_F(UsdFile, NamesEveryGridOfTheFileBesideIt) {
 
 TEST_F(UsdFile, SaysWhatTheGridsHold) {
     writeUsda(print(), folder_ / "part.vdb", folder_ / "part.usda");
-    const std::string text = written(folder_ / "part.usda");
+    const std::string text = test::bytesOf(folder_ / "part.usda");
     EXPECT_NE(primOf(text, "surface").find("fieldDataType = \"float\""), std::string::npos);
     EXPECT_NE(primOf(text, "surface").find("fieldClass = \"levelSet\""), std::string::npos);
     EXPECT_NE(primOf(text, "layer").find("fieldDataType = \"int\""), std::string::npos);
@@ -82,25 +74,25 @@ TEST_F(UsdFile, SaysWhatTheGridsHold) {
 // Voxel (0, 0, 0) is at (1, 2, 3), voxel (10, 20, 30) half as many units on.
 TEST_F(UsdFile, ExtentUnitAndAxis) {
     writeUsda(print(), folder_ / "a.vdb", folder_ / "a.usda");
-    const std::string plain = written(folder_ / "a.usda");
+    const std::string plain = test::bytesOf(folder_ / "a.usda");
     EXPECT_NE(plain.find("extent = [(1, 2, 3), (6, 12, 18)]"), std::string::npos) << plain;
     EXPECT_NE(plain.find("metersPerUnit = 0.001"), std::string::npos);
     EXPECT_NE(plain.find("upAxis = \"Z\""), std::string::npos);
     writeUsda(print(), folder_ / "a.vdb", folder_ / "a.usda", {.meters_per_unit = 1, .up_y = true});
-    const std::string houdini = written(folder_ / "a.usda");
+    const std::string houdini = test::bytesOf(folder_ / "a.usda");
     EXPECT_NE(houdini.find("metersPerUnit = 1\n"), std::string::npos);
     EXPECT_NE(houdini.find("upAxis = \"Y\""), std::string::npos);
 }
 
 TEST_F(UsdFile, AMaterialAFilament) {
     writeUsda(print(), folder_ / "a.vdb", folder_ / "a.usda", {.materials = {{"tool_0", {255, 0, 0}}}});
-    const std::string one = written(folder_ / "a.usda");
+    const std::string one = test::bytesOf(folder_ / "a.usda");
     EXPECT_NE(one.find("rel material:binding = </print/materials/tool_0>"), std::string::npos) << one;
     EXPECT_NE(one.find("prepend apiSchemas = [\"MaterialBindingAPI\"]"), std::string::npos) << one;
     EXPECT_NE(one.find("color3f inputs:diffuseColor = (1.000000, 0.000000, 0.000000)"), std::string::npos) << one;
     writeUsda(print(), folder_ / "a.vdb", folder_ / "a.usda",
               {.materials = {{"tool_0", {255, 0, 0}}, {"tool_1", {0, 0, 255}}}});
-    const std::string two = written(folder_ / "a.usda");
+    const std::string two = test::bytesOf(folder_ / "a.usda");
     EXPECT_EQ(two.find("material:binding"), std::string::npos) << two;
     EXPECT_EQ(countOf(two, "def Material"), 2U);
     EXPECT_EQ(countOf(two, "{"), countOf(two, "}"));

@@ -5,6 +5,7 @@
 // repeated up to that.
 #include "base/error.h"
 #include "fuzz/memory_file.h"
+#include "fuzz/require.h"
 #include "shade/measured/brdf_file.h"
 #include "shade/measured/merl_file.h"
 #include "shade/measured/scan_interpolant.h"
@@ -19,17 +20,13 @@ namespace {
 
 using stratum::shade::Color;
 
-void require(bool good) {
-    if (!good) __builtin_trap();
-}
-
-void require(const Color& value) { require(stratum::shade::isFinite(value) && value.r >= 0.0f && value.b >= 0.0f); }
+void requireColor(const Color& c) { require(stratum::shade::isFinite(c) && c.r >= 0.0f && c.g >= 0.0f && c.b >= 0.0f); }
 
 void check(const stratum::shade::BrdfScan& raw) {
     raw.check("fuzz");
     const stratum::shade::BrdfScan scan = stratum::shade::foldScan(raw);
     require(scan.values.size() == scan.incidences.size() * scan.azimuths.size() * scan.polars.size());
-    for (const Color& value : scan.values) require(value);
+    for (const Color& value : scan.values) requireColor(value);
     constexpr std::size_t kFew = 24;  // a fit to more finds nothing, slowly
     if (scan.values.size() > kFew) return;
     const stratum::shade::ScanInterpolant whole(scan);
@@ -40,8 +37,8 @@ void check(const stratum::shade::BrdfScan& raw) {
 }
 
 void check(const stratum::shade::HalfDiffTable& table) {
-    require(table.at({0.0f, 0.0f, 1.0f}, {0.6f, 0.0f, 0.8f}));
-    require(table.at({0.8f, 0.0f, 0.6f}, {0.6f, 0.0f, 0.8f}));
+    requireColor(table.at({0.0f, 0.0f, 1.0f}, {0.6f, 0.0f, 0.8f}));
+    requireColor(table.at({0.8f, 0.0f, 0.6f}, {0.6f, 0.0f, 0.8f}));
 }
 
 }  // namespace

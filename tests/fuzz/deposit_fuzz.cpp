@@ -4,6 +4,7 @@
 // How to build and run it stands in scripts/fuzz.sh. The first byte chooses the model of the plastic, then ten bytes
 // are a bead: x, y, z of both ends, width, height, sweep and a byte of options.
 #include "base/error.h"
+#include "fuzz/require.h"
 #include "study/geometry/handmade.h"
 #include "voxelize/grid/voxelizer.h"
 
@@ -17,10 +18,6 @@ namespace {
 
 using stratum::gcode::Toolpath;
 using stratum::voxelize::Lattice;
-
-void require(bool good) {
-    if (!good) __builtin_trap();
-}
 
 constexpr std::size_t kBytes = 10;
 constexpr std::size_t kMostBeads = 5000;

@@ -8,6 +8,7 @@
 // How to build and run it stands in scripts/fuzz.sh.
 #include "base/error.h"
 #include "deposit/read_print.h"
+#include "fuzz/require.h"
 #include "gcode/reader.h"
 #include "gcode/summary.h"
 
@@ -17,10 +18,6 @@
 #include <string_view>
 
 namespace {
-
-void require(bool good) {
-    if (!good) __builtin_trap();
-}
 
 void check(const stratum::gcode::Toolpath& toolpath) {
     require(!toolpath.empty());

@@ -4,6 +4,7 @@
 // How to build and run it stands in scripts/fuzz.sh.
 #include "base/error.h"
 #include "fuzz/memory_file.h"
+#include "fuzz/require.h"
 #include "shade/environment/light_map.h"
 #include "shade/environment/map_environment.h"
 
@@ -13,10 +14,6 @@
 #include <string_view>
 
 namespace {
-
-void require(bool good) {
-    if (!good) __builtin_trap();
-}
 
 void check(const stratum::shade::LightMap& map) {
     require(map.width == 2 * map.height);

@@ -3,6 +3,7 @@
 //
 // How to build and run it stands in scripts/fuzz.sh.
 #include "base/error.h"
+#include "fuzz/require.h"
 #include "shade/environment/environment.h"
 #include "shade/finish/named_brdf.h"
 #include "shade/palette/filament_color.h"
@@ -18,10 +19,6 @@
 namespace {
 
 using namespace stratum;
-
-void require(bool good) {
-    if (!good) __builtin_trap();
-}
 
 void check(const view::ViewState& state) {
     require(view::parseViewState(view::toJson(state)) == state);

@@ -6,6 +6,7 @@
 #include "base/error.h"
 #include "compare/comparison.h"
 #include "compare/model_file.h"
+#include "fuzz/require.h"
 
 #include <openvdb/tools/LevelSetSphere.h>
 #include <unistd.h>
@@ -21,10 +22,6 @@
 namespace {
 
 namespace fs = std::filesystem;
-
-void require(bool good) {
-    if (!good) __builtin_trap();
-}
 
 // A folder of this process: models are told by the endings of their names.
 class Folder {

@@ -5,6 +5,7 @@
 #include "animate/camera_path.h"
 #include "base/error.h"
 #include "fuzz/memory_file.h"
+#include "fuzz/require.h"
 
 #include <algorithm>
 #include <cmath>
@@ -13,10 +14,6 @@
 #include <string_view>
 
 namespace {
-
-void require(bool good) {
-    if (!good) __builtin_trap();
-}
 
 void check(const std::vector<stratum::animate::CameraKey>& keys) {
     require(keys.size() >= 2 && stratum::animate::durationOf(keys) > 0);

@@ -6,6 +6,7 @@
 #include "base/error.h"
 #include "deposit/printer.h"
 #include "fuzz/memory_file.h"
+#include "fuzz/require.h"
 
 #include <cmath>
 #include <cstddef>
@@ -13,10 +14,6 @@
 #include <string_view>
 
 namespace {
-
-void require(bool good) {
-    if (!good) __builtin_trap();
-}
 
 void check(const stratum::gcode::PrinterLimits& printer) {
     using namespace stratum::gcode;

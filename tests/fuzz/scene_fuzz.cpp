@@ -6,6 +6,7 @@
 #include "assemble/scene_file.h"
 #include "base/error.h"
 #include "fuzz/memory_file.h"
+#include "fuzz/require.h"
 #include "shade/camera/camera.h"
 #include "shade/light/light.h"
 #include "trace/sdf.h"
@@ -16,10 +17,6 @@
 #include <string_view>
 
 namespace {
-
-void require(bool good) {
-    if (!good) __builtin_trap();
-}
 
 bool isFinite(const glm::dvec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 

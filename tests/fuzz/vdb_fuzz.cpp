@@ -4,6 +4,7 @@
 // How to build and run it stands in scripts/fuzz.sh. OpenVDB itself is not instrumented, but for what its headers hold.
 #include "base/error.h"
 #include "fuzz/memory_file.h"
+#include "fuzz/require.h"
 #include "march/attribute/attribute_grid.h"
 #include "march/brick/brick_intersector.h"
 #include "march/file/level_set_file.h"
@@ -22,10 +23,6 @@ namespace {
 
 namespace march = stratum::march;
 namespace trace = stratum::trace;
-
-void require(bool good) {
-    if (!good) __builtin_trap();
-}
 
 constexpr std::size_t kRays = 27;
 

@@ -17,14 +17,15 @@
 
 namespace stratum::gcode {
 
-/// What isn't set isn't checked. Places are of the last bead, in mm.
+/// One bead of 1 mm of filament, unless it says otherwise; what else isn't set isn't checked. Places are of the last
+/// bead, in mm.
 struct Dialect {
     std::string_view name;  ///< letters, digits and underscores
     std::string_view program;
     std::string_view rule;      ///< in plain words
     std::string_view document;  ///< that says so
-    std::size_t beads = 0;
-    double filament = 0;  ///< mm
+    std::size_t beads = 1;
+    double filament = 1;  ///< mm
     std::optional<Point> start{};
     std::optional<Point> end{};
     std::optional<double> sweep{};   ///< radians, of the last arc

@@ -105,6 +105,18 @@ TEST(ElementSets, NodesAreThoseOfTheElements) {
     EXPECT_FALSE(nodes["XMIN"].empty());
 }
 
+TEST(InpFile, WritesConstantsAsTheyWereGiven) {
+    const test::ScratchFolder folder;
+    const Made made;
+    InpOptions options;
+    options.source = "a\n*STEP.gcode";
+    options.elastic = parseElastic("3500,0.4999999");
+    writeInp(made.elements, made.mesh, made.toolpath, options, folder.path() / "a.inp");
+    const std::string text = test::bytesOf(folder.path() / "a.inp");
+    EXPECT_NE(text.find("\n3500, 0.4999999\n"), std::string::npos);
+    EXPECT_EQ(text.find("\n*STEP"), std::string::npos);
+}
+
 TEST(InpFile, HasNodesElementsAndSets) {
     const test::ScratchFolder folder;
     const Made made;
@@ -173,9 +185,7 @@ TEST(InpFile, HasTheSameBytesForAnyNumberOfThreads) {
         const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
         const Made made;
         writeInp(made.elements, made.mesh, made.toolpath, {}, folder.path() / "a.inp");
-        std::ostringstream text;
-        text << std::ifstream(folder.path() / "a.inp").rdbuf();
-        return text.str();
+        return test::bytesOf(folder / "a.inp");
     };
     EXPECT_EQ(bytes(1), bytes(4));
 }

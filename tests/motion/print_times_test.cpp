@@ -102,30 +102,34 @@ TEST_P(OwnPrints, TakeWhatPrusaSlicerSays) {
     EXPECT_EQ(print.times.rule, "slicer-jerk");
 }
 
+// check(text, seconds) of each line, with the time that is planned for it.
+template <typename Check>
+void atEachLine(std::string_view program, const PlanList& plan, const Check& check) {
+    std::size_t piece = 0;
+    for (std::uint32_t line = 1; !program.empty(); ++line) {
+        while (piece < plan.pieces.size() && plan.pieces[piece].segment.line < line) ++piece;
+        const auto end = std::min(program.find('\n'), program.size());
+        check(std::string(program.substr(0, end)),
+              piece < plan.pieces.size() ? plan.pieces[piece].start : plan.seconds);
+        program.remove_prefix(std::min(end + 1, program.size()));
+    }
+}
+
 // What M73 P says of the time at its line: minutes that are left, cut or rounded.
 TEST(PrintTimes, EveryM73IsMet) {
     for (const char* name : {"gcode/Printrun-testgeometry.gcode", "gcode/libbgcode-mini_cube_a.gcode"}) {
         STRATUM_NEEDS_CORPUS(path, name);
         const gcode::InputBytes file(path.string());
         const PlanList plan = planOf(file.bytes());
-        std::size_t piece = 0;
-        std::uint32_t line = 0;
         int checked = 0;
-        std::string_view rest = file.bytes();
-        while (!rest.empty()) {
-            ++line;
-            const auto end = std::min(rest.find('\n'), rest.size());
+        atEachLine(file.bytes(), plan, [&](const std::string& text, double now) {
             int percent = 0;
             int minutes = 0;
-            if (std::sscanf(std::string(rest.substr(0, end)).c_str(), "M73 P%d R%d", &percent, &minutes) == 2) {
-                while (piece < plan.pieces.size() && plan.pieces[piece].segment.line < line) ++piece;
-                const double now = piece < plan.pieces.size() ? plan.pieces[piece].start : plan.seconds;
-                EXPECT_NEAR(plan.seconds - now, 60.0 * minutes, 60 + 0.01 * plan.seconds) << name << ":" << line;
-                EXPECT_NEAR(100 * now / plan.seconds, percent, 1.6) << name << ":" << line;
-                ++checked;
-            }
-            rest.remove_prefix(std::min(end + 1, rest.size()));
-        }
+            if (std::sscanf(text.c_str(), "M73 P%d R%d", &percent, &minutes) != 2) return;
+            EXPECT_NEAR(plan.seconds - now, 60.0 * minutes, 60 + 0.01 * plan.seconds) << name << ": " << text;
+            EXPECT_NEAR(100 * now / plan.seconds, percent, 1.6) << name << ": " << text;
+            ++checked;
+        });
         EXPECT_GT(checked, 100) << name;
     }
 }
@@ -134,22 +138,13 @@ TEST(PrintTimes, CurasLayersAreMet) {
     STRATUM_NEEDS_CORPUS(path, "gcode/preprocess_cancellation-cura.gcode");
     const gcode::InputBytes file(path.string());
     const PlanList plan = planOf(file.bytes());
-    std::size_t piece = 0;
-    std::uint32_t line = 0;
     int checked = 0;
-    std::string_view rest = file.bytes();
-    while (!rest.empty()) {
-        ++line;
-        const auto end = std::min(rest.find('\n'), rest.size());
+    atEachLine(file.bytes(), plan, [&checked](const std::string& text, double now) {
         double elapsed = 0;
-        if (std::sscanf(std::string(rest.substr(0, end)).c_str(), ";TIME_ELAPSED:%lf", &elapsed) == 1) {
-            while (piece < plan.pieces.size() && plan.pieces[piece].segment.line < line) ++piece;
-            const double now = piece < plan.pieces.size() ? plan.pieces[piece].start : plan.seconds;
-            EXPECT_NEAR(now, elapsed, 5 + 0.05 * elapsed) << line;
-            ++checked;
-        }
-        rest.remove_prefix(std::min(end + 1, rest.size()));
-    }
+        if (std::sscanf(text.c_str(), ";TIME_ELAPSED:%lf", &elapsed) != 1) return;
+        EXPECT_NEAR(now, elapsed, 5 + 0.05 * elapsed) << text;
+        ++checked;
+    });
     EXPECT_EQ(checked, 25);
 }
 

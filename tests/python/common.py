@@ -3,11 +3,18 @@
 import os
 import subprocess
 import sys
+import tempfile
 
 SOURCE = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 BIN = os.environ["STRATUM_BIN"]
 sys.path.append(os.path.join(SOURCE, "tests", "clients"))  # png_file
 CORPUS = os.environ.get("STRATUM_CORPUS", os.path.join(os.path.dirname(SOURCE), "shared", "corpus"))
+SCRATCH = tempfile.TemporaryDirectory(prefix="stratum_python_")  # goes with the process
+FOLDER = SCRATCH.name
+
+
+def path_of(name):
+    return os.path.join(FOLDER, name)
 
 
 def gcode(name):

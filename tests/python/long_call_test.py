@@ -1,7 +1,6 @@
 """Long calls: other threads run meanwhile, progress is told, Ctrl-C ends them."""
 
 import os
-import tempfile
 import threading
 import time
 import unittest
@@ -9,23 +8,21 @@ import unittest
 import numpy as np
 
 import stratum
-from common import gcode, python
-
-FOLDER = tempfile.mkdtemp(prefix="stratum_python_")
+from common import FOLDER, gcode, path_of, python
 
 # Each takes many seconds, but the first, which Ctrl-C comes to earlier: a fast machine reads 120 MB in 0.4 s.
 LONG = {
     "read": "stratum.read(program)",
     "voxelize": "stratum.voxelize(toolpath, voxel_size=0.02)",
     "voxelize_block": "stratum.voxelize_block(toolpath, voxel_size=0.03)",
-    "write_vdb": f"stratum.write_vdb(toolpath, {os.path.join(FOLDER, 'never.vdb')!r}, voxel_size=0.02)",
+    "write_vdb": f"stratum.write_vdb(toolpath, {path_of('never.vdb')!r}, voxel_size=0.02)",
     "render": "stratum.render(toolpath, size=(2560, 1920), spp=256, denoise=False, voxel_size=0.2)",
     "distance": "stratum.PrintField(toolpath, voxel_size=0.1).distance(points)",
     "trace": "shape.trace(points, points)",
     # What follows the voxels: the signal comes when they are there.
     "report": "stratum.report(toolpath, voxel_size=0.04, progress=arm)",
     "interior_distance": "stratum.voxelize(toolpath, voxel_size=0.03, interior_distance=True, progress=arm)",
-    "write": f"level_set.write({os.path.join(FOLDER, 'never.vdb')!r}, compression='zip')",
+    "write": f"level_set.write({path_of('never.vdb')!r}, compression='zip')",
     "read_level_set": "stratum.LevelSet.read(file)",
     "dense": "level_set.dense(box)",
 }

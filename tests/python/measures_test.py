@@ -1,18 +1,10 @@
 """Numbers of a print and its distances from a model: those of gcode2vdb."""
 
 import json
-import os
-import tempfile
 import unittest
 
 import stratum
-from common import gcode, tool
-
-FOLDER = tempfile.mkdtemp(prefix="stratum_python_")
-
-
-def path_of(name):
-    return os.path.join(FOLDER, name)
+from common import gcode, path_of, tool
 
 
 class Measures(unittest.TestCase):

@@ -1,20 +1,12 @@
 """Pictures: the pixels and files of vdbtrace."""
 
-import os
-import tempfile
 import unittest
 
 import numpy as np
 
 import stratum
-from common import gcode, read_bytes, tool
+from common import gcode, path_of, read_bytes, tool
 from png_file import png_pixels
-
-FOLDER = tempfile.mkdtemp(prefix="stratum_python_")
-
-
-def path_of(name):
-    return os.path.join(FOLDER, name)
 
 
 def pixels_of(path):

@@ -16,9 +16,7 @@ import zlib
 import numpy as np
 
 import stratum
-from common import gcode, read_bytes, tool
-
-FOLDER = tempfile.mkdtemp(prefix="stratum_python_")
+from common import gcode, path_of, read_bytes, tool
 
 
 def box_of_beads(count, layers=1):
@@ -44,7 +42,7 @@ class Reading(unittest.TestCase):
     def test_same_as_the_tool(self):
         path = gcode("hull.gcode")
         toolpath = stratum.read(path)
-        lines = tool("gcode2vdb", path, "--dump-toolpath", "-", "--voxel-size", "0.4", "-o", os.path.join(FOLDER, "hull.vdb"), "--quiet").splitlines()
+        lines = tool("gcode2vdb", path, "--dump-toolpath", "-", "--voxel-size", "0.4", "-o", path_of("hull.vdb"), "--quiet").splitlines()
         names = lines[0].split(",")
         rows = np.genfromtxt(lines[1:], delimiter=",", usecols=[names.index(n) for n in names if n[-1] in "01"])
         columns = [n for n in names if n[-1] in "01"]
@@ -305,7 +303,7 @@ class Pickles(unittest.TestCase):
 
     def test_gives_the_same_file(self):
         toolpath = stratum.read(gcode("two_tone.gcode"), timed=True)
-        files = [os.path.join(FOLDER, name) for name in ("plain.vdb", "pickled.vdb")]
+        files = [path_of(name) for name in ("plain.vdb", "pickled.vdb")]
         for path, of in zip(files, (toolpath, pickle.loads(pickle.dumps(toolpath)))):
             stratum.write_vdb(of, path, voxel_size=0.3, grids="color,time,tool")
         self.assertEqual(read_bytes(files[0]), read_bytes(files[1]))

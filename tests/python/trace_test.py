@@ -1,15 +1,11 @@
 """Rays: the same hits through a print, its level set and its file, and against the field they are of."""
 
-import os
-import tempfile
 import unittest
 
 import numpy as np
 
 import stratum
-from common import gcode
-
-FOLDER = tempfile.mkdtemp(prefix="stratum_python_")
+from common import gcode, path_of
 
 
 class Tracing(unittest.TestCase):
@@ -19,7 +15,7 @@ class Tracing(unittest.TestCase):
         options = {"voxel_size": 0.1, "layers": "1:15"}
         cls.field = stratum.PrintField(toolpath, **options)
         cls.level_set = stratum.voxelize(toolpath, grids="layer,width", **options)
-        cls.path = os.path.join(FOLDER, "hull.vdb")
+        cls.path = path_of("hull.vdb")
         cls.level_set.write(cls.path)
         low, high = np.array(cls.level_set.bounds)
         generator = np.random.default_rng(7)

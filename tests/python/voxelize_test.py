@@ -2,19 +2,12 @@
 
 import os
 import sys
-import tempfile
 import unittest
 
 import numpy as np
 
 import stratum
-from common import CORPUS, gcode, read_bytes, tool
-
-FOLDER = tempfile.mkdtemp(prefix="stratum_python_")
-
-
-def path_of(name):
-    return os.path.join(FOLDER, name)
+from common import CORPUS, gcode, path_of, read_bytes, tool
 
 
 class Files(unittest.TestCase):

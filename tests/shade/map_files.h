@@ -1,6 +1,7 @@
 // Environment maps written by the tests.
 #pragma once
 
+#include "scratch_folder.h"
 #include "shade/color.h"
 
 #include <ImfChannelList.h>
@@ -11,16 +12,11 @@
 
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <map>
 #include <string>
 #include <vector>
 
 namespace stratum::test {
-
-inline void writeText(const std::filesystem::path& path, const std::string& bytes) {
-    std::ofstream(path, std::ios::binary) << bytes;
-}
 
 /// A Radiance picture without run lengths.
 inline std::string hdrBytes(const std::string& header, int width, int height, const std::vector<shade::Color>& texels) {

@@ -4,6 +4,7 @@
 #include "march/brick/brick_intersector.h"
 #include "march/file/sdf_grid.h"
 #include "random_rays.h"
+#include "refusal.h"
 #include "trace/scene_intersector.h"
 
 #include <gtest/gtest.h>
@@ -143,13 +144,9 @@ TEST(SdfGrid, IsRefusedIfItWouldNotFit) {
     for (const double voxel : {0.1, 0.03, 0.01}) {
         const auto bytes = static_cast<double>(march::makeSdfGrid(*shape, voxel)->memUsage());
         EXPECT_NO_THROW(march::makeSdfGrid(*shape, voxel, static_cast<std::size_t>(2 * bytes))) << voxel;
-        try {
+        EXPECT_TRUE(test::refuses<UsageError>("GB here; take a voxel_size of", [&] {
             march::makeSdfGrid(*shape, voxel, static_cast<std::size_t>(0.4 * bytes));
-            ADD_FAILURE() << "not refused";
-        } catch (const UsageError& error) {
-            EXPECT_NE(std::string(error.what()).find("GB here; take a voxel_size of"), std::string::npos)
-                << error.what();
-        }
+        }));
     }
 }
 

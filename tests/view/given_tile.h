@@ -9,8 +9,7 @@ namespace stratum::test {
 inline view::GivenInput givenTile(double voxel_size) {
     view::GivenInput given;
     given.path = (sourceDir() / "data/gcode/tile.gcode").string();
-    given.objects.emplace_back();
-    given.objects.front().vdb = given.path;
+    given.objects.push_back({.vdb = given.path});
     given.options.tracing.prints.print.lattice.voxel_size = voxel_size;
     return given;
 }

@@ -15,12 +15,15 @@
 
 namespace stratum::test {
 
-/// Collects it, from any thread.
+/// Collects it, from any thread; the file of a picture as "bytes".
 class Shown {
 public:
     view::Output output() {
         return {[this](const nlohmann::json& message) { note(message); },
-                [this](const nlohmann::json& head, const std::vector<std::uint8_t>&) { note(head); }};
+                [this](nlohmann::json head, const std::vector<std::uint8_t>& file) {
+                    head["bytes"] = file;
+                    note(head);
+                }};
     }
     void note(const nlohmann::json& message) {
         const std::lock_guard lock(mutex_);

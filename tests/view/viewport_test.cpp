@@ -115,6 +115,41 @@ TEST(Viewport, WhatIsSavedIsWhatWasAskedFor) {
     EXPECT_NE(saved["camera"], page.shown.waitFor("picture", 3, "final")["camera"]);
 }
 
+ViewState upTo(int last_layer) {
+    ViewState state = test::smallState();
+    state.last_layer = last_layer;
+    return state;
+}
+
+TEST(Viewport, TheViewHasItsOwnObjectsAfterASaveOfOthers) {
+    OnePage page;
+    page.viewport.ask(test::show(1, upTo(2)));
+    page.workUntilIdle();
+    page.viewport.ask(test::show(3, upTo(2)));
+    page.viewport.ask(SaveMessage{2, upTo(4)});
+    page.workUntilIdle();
+    const auto before = page.shown.waitFor("picture", 1, "final"), after = page.shown.waitFor("picture", 3, "final");
+    ASSERT_FALSE(before.is_null() || after.is_null());
+    EXPECT_TRUE(before["bytes"] == after["bytes"]);
+    EXPECT_TRUE(before["bytes"] != page.shown.waitFor("picture", 2, "saved")["bytes"]);
+}
+
+TEST(Viewport, ASaveThatFailsSpoilsNoView) {
+    OnePage page;
+    page.viewport.ask(test::show(1, upTo(2)));
+    ViewState nothing = test::smallState();
+    nothing.first_layer = 4000;
+    nothing.last_layer = 4001;
+    page.viewport.ask(SaveMessage{2, nothing});
+    page.workUntilIdle();
+    EXPECT_NE(page.shown.waitFor("not-saved")["text"].get<std::string>().find("layers"), std::string::npos);
+    EXPECT_EQ(page.shown.kinds().back(), "final");
+    // The next one is saved.
+    page.viewport.ask(SaveMessage{3, upTo(4)});
+    page.workUntilIdle();
+    EXPECT_FALSE(page.shown.waitFor("picture", 3, "saved").is_null());
+}
+
 // One that is given up is not taken for the next one.
 TEST(Viewport, ASavedPictureThatIsGivenUpGivesWay) {
     OnePage page;

@@ -1,13 +1,13 @@
 #include "command_source.h"
 
 #include "base/error.h"
+#include "base/text.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <utility>
 
@@ -18,14 +18,10 @@ namespace {
 constexpr Names<std::string_view, 4> kOwnNames = {
     {{"seconds", "time"}, {"lights", "light"}, {"objects", "object"}, {"tools", "tool"}}};
 
-// The whole of a text, or nothing.
+// The number that the whole text is, also with a plus in front; or nothing.
 template <typename Number>
 std::optional<Number> parsed(const std::string& text) {
-    Number value{};
-    const char* end = text.data() + text.size();
-    const auto [stop, error] = std::from_chars(text.data() + (text.starts_with('+') ? 1 : 0), end, value);
-    if (error != std::errc{} || stop != end) return std::nullopt;
-    return value;
+    return stratum::parsed<Number>(std::string_view(text).substr(text.starts_with('+') ? 1 : 0));
 }
 
 std::optional<double> parsedNumber(const std::string& text) {

@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <cstdio>
 #include <string_view>
 #include <utility>
 
@@ -34,14 +33,9 @@ void showLine(std::string_view text) {
         if (begins && ++shown > room) break;
     }
     tellError(fmt::format("\r\033[K{}", text.substr(0, end)));
-    std::fflush(stderr);
 }
 
 void clearLine() { showLine({}); }
-
-double secondsSince(steady_clock::time_point start) {
-    return std::chrono::duration<double>(steady_clock::now() - start).count();
-}
 
 }  // namespace
 

@@ -17,13 +17,13 @@ namespace stratum::assemble {
 /// One object as the file describes it. Either `vdb` or `sdf` is set.
 struct ObjectOptions {
     std::string vdb;          ///< path of a level set's file
-    std::string grid;         ///< empty: chosen as by --grid
-    trace::SdfPtr sdf;        ///< a shape by formula, in its own space
-    std::string up;           ///< axis of the file that points up: "y", "z", or empty for what the file says
+    std::string grid{};       ///< empty: chosen as by --grid
+    trace::SdfPtr sdf{};      ///< a shape by formula, in its own space
+    std::string up{};         ///< axis of the file that points up: "y", "z", or empty for what the file says
     double voxel_size = 0.0;  ///< of an sdf that is voxelized; 0: traced as it is
     double tolerance = 1e-4;  ///< of an sdf that is traced as it is, see makeSdfIntersector()
-    trace::Placement placement;
-    shade::MaterialOptions material;  ///< empty: the scene's
+    trace::Placement placement{};
+    shade::MaterialOptions material{};  ///< empty: the scene's
 };
 
 /// Reads one entry of "objects". Throws InputError with the path of what is wrong.

@@ -12,6 +12,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
+#include <array>
 #include <limits>
 #include <string_view>
 #include <utility>
@@ -25,8 +27,7 @@ void readReading(OptionSource& options, voxelize::PrintOptions& print) {
         deposit::usePrinter(*printer, read);
         print.printer = *printer;
     }
-    if (const auto plate = options.integer("plate", 1, std::numeric_limits<int>::max()))
-        read.plate = static_cast<int>(*plate);
+    assign(read.plate, options.integer("plate", 1, std::numeric_limits<int>::max()));
     if (std::vector<double> diameters = options.list("filament_diameter"); !diameters.empty()) {
         for (const double diameter : diameters)
             if (!(diameter >= 0.1 && diameter <= 20)) options.refuse("filament_diameter", "0.1 to 20 mm");
@@ -37,9 +38,8 @@ void readReading(OptionSource& options, voxelize::PrintOptions& print) {
             toolColorsOf(fmt::format("{}", fmt::join(colors, ",")), options.called("filament_colors")).colors;
     if (const auto text = options.text("tool_offsets"))
         read.tool_offsets = gcode::toolOffsetsOf(*text, options.called("tool_offsets"));
-    if (const auto height = options.numberIn("layer_height", 0.001, 50)) read.layer_height = *height;
-    if (const auto angle = options.numberIn("belt", gcode::kFlattestBelt, gcode::kSteepestBelt))
-        read.belt_angle = *angle;
+    assign(read.layer_height, options.numberIn("layer_height", 0.001, 50));
+    assign(read.belt_angle, options.numberIn("belt", gcode::kFlattestBelt, gcode::kSteepestBelt));
     assign(read.planar, options.flag("planar"));
     assign(read.extruder_mode, options.choice("e_mode", gcode::kExtruderModes));
     assign(read.firmware, options.choice("firmware", gcode::kFirmwares));
@@ -47,9 +47,8 @@ void readReading(OptionSource& options, voxelize::PrintOptions& print) {
     assign(read.deposit.beads, options.choice("beads", gcode::kBeadModels));
     if (const auto section = options.text("section")) deposit::parseSection(*section, read.deposit);
     assign(read.flow_percent, options.numberIn("flow", 1, gcode::kMostFlow));
-    if (const auto lag = options.numberIn("flow_lag", 0, deposit::kLongestLag)) read.deposit.flow_lag = *lag;
-    if (const auto advance = options.numberIn("pressure_advance", 0, gcode::kLongestAdvance))
-        read.deposit.pressure_advance = *advance;
+    assign(read.deposit.flow_lag, options.numberIn("flow_lag", 0, deposit::kLongestLag));
+    assign(read.deposit.pressure_advance, options.numberIn("pressure_advance", 0, gcode::kLongestAdvance));
     assign(read.deposit.sag, options.numberIn("sag", 0, deposit::kMostSag));
     assign(read.deposit.crown, options.numberIn("crown", 0, gcode::kMostCrown));
     assign(read.deposit.strings, options.flag("strings"));
@@ -70,25 +69,15 @@ void readSelection(OptionSource& options, voxelize::PrintOptions& print) {
 }
 
 void readLattice(OptionSource& options, voxelize::PrintOptions& print, bool pictures) {
-    int ways = 0;
     if (pictures && options.says("voxel_size", "auto"))
         print.voxel_auto = true;
-    else if (const auto size = options.number("voxel_size"))
-        print.lattice.voxel_size = *size;
-    ways += print.voxel_auto || print.lattice.voxel_size ? 1 : 0;
-    if (const auto count = options.integer("voxels_per_layer", 1, 64)) {
-        print.lattice.voxels_per_layer = static_cast<int>(*count);
-        ++ways;
-    }
-    if (const auto tolerance = options.number("tolerance")) {
-        print.tolerance = *tolerance;
-        ++ways;
-    }
-    if (const auto budget = options.text("memory_budget")) {
-        print.memory_budget = *budget;
-        ++ways;
-    }
-    if (ways > 1)
+    else
+        assign(print.lattice.voxel_size, options.number("voxel_size"));
+    assign(print.lattice.voxels_per_layer, options.integer("voxels_per_layer", 1, 64));
+    assign(print.tolerance, options.number("tolerance"));
+    assign(print.memory_budget, options.text("memory_budget"));
+    constexpr std::array<std::string_view, 4> kWays{"voxel_size", "voxels_per_layer", "tolerance", "memory_budget"};
+    if (std::ranges::count_if(kWays, [&options](std::string_view way) { return options.given(way); }) > 1)
         throw UsageError(fmt::format("{}, {}, {} and {} all choose the voxel; give one of them",
                                      options.called("voxel_size"), options.called("voxels_per_layer"),
                                      options.called("tolerance"), options.called("memory_budget")));

@@ -108,9 +108,8 @@ std::vector<gcode::Thumbnail> makeThumbnails(const std::shared_ptr<const gcode::
                                       std::span<const glm::dvec3> outline) {
         return pixelSpreadOf(sharpest, print, part, outline);
     };
-    ObjectOptions object;
-    object.vdb = name;
-    const TracedObjects objects = readTracedObjects({object}, tracingFor(sharpest.scene, sharpest.render, tracing));
+    const TracedObjects objects =
+        readTracedObjects({{.vdb = name}}, tracingFor(sharpest.scene, sharpest.render, tracing));
 
     std::map<std::pair<int, int>, Pixels> pictures;
     std::vector<gcode::Thumbnail> thumbnails;

@@ -7,7 +7,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <array>
 #include <utility>
 
@@ -35,11 +34,7 @@ std::string_view behindEcho(std::string_view line) {
 
 template <typename Take>
 void eachLine(std::string_view text, const Take& take) {
-    for (std::size_t number = 1; !text.empty(); ++number) {
-        const std::size_t end = std::min(text.find('\n'), text.size());
-        take(text.substr(0, end), number);
-        text.remove_prefix(std::min(end + 1, text.size()));
-    }
+    for (std::size_t number = 1; !text.empty(); ++number) take(takePiece(text, '\n'), number);
 }
 
 // The commands of one line.

@@ -86,11 +86,7 @@ public:
                 fmt::format("{}: more than {} files or {} bytes are included", place_, kMostFiles, kMostBytes));
         stack_.push_back(fs::absolute(path).lexically_normal());
         Parser parser(*this, path);
-        for (std::size_t line = 1; !text.empty(); ++line) {
-            const std::size_t end = std::min(text.find('\n'), text.size());
-            parser.line(text.substr(0, end), line);
-            text.remove_prefix(std::min(end + 1, text.size()));
-        }
+        for (std::size_t line = 1; !text.empty(); ++line) parser.line(takePiece(text, '\n'), line);
         stack_.pop_back();
     }
 
@@ -199,11 +195,9 @@ const KlipperConfig::Value* KlipperConfig::find(std::string_view section, std::s
 
 bool looksLikeKlipperConfig(std::string_view text) {
     while (!text.empty()) {
-        const std::size_t end = std::min(text.find_first_of("\r\n"), text.size());
-        const std::string_view line = text.substr(0, end);
+        const std::string_view line = takePiece(text, "\r\n");
         if (line.size() > 2 && line[0] == '[' && isLetter(line[1]) && line.find(']') != std::string_view::npos)
             return true;
-        text.remove_prefix(std::min(end + 1, text.size()));
     }
     return false;
 }

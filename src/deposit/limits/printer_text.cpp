@@ -3,7 +3,6 @@
 #include "base/error.h"
 #include "base/text.h"
 
-#include <fast_float/fast_float.h>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -21,10 +20,11 @@ constexpr std::size_t kLongestQuote = 60;  // bytes of the file in a message
         fmt::format("{}: {} is {}; expected a number from {:g} to {:g}", place, what, text, bounds.least, bounds.most));
 }
 
-// On one line.
+// On one line, without what a terminal obeys.
 std::string quoted(std::string_view text) {
     std::string line(text.substr(0, kLongestQuote));
-    std::replace(line.begin(), line.end(), '\n', ' ');
+    std::ranges::replace_if(
+        line, [](unsigned char c) { return c < ' ' || c == 0x7f; }, ' ');
     return line.empty() ? "empty" : fmt::format("'{}'", line);
 }
 
@@ -62,14 +62,9 @@ std::string readIncludedText(const std::string& path, const std::string& place) 
 
 double numberIn(std::string_view text, gcode::Bounds bounds, std::string_view place, std::string_view what) {
     text = trim(text);
-    std::string_view digits = text;
-    if (digits.starts_with('+')) digits.remove_prefix(1);
-    double value = 0;
-    const auto [end, error] = fast_float::from_chars(digits.data(), digits.data() + digits.size(), value);
-    if (error != std::errc() || end != digits.data() + digits.size() ||
-        !(value >= bounds.least && value <= bounds.most))
-        refuse(bounds, quoted(text), place, what);
-    return value;
+    const auto value = parsed<double>(text.substr(text.starts_with('+') ? 1 : 0));
+    if (!value || !(*value >= bounds.least && *value <= bounds.most)) refuse(bounds, quoted(text), place, what);
+    return *value;
 }
 
 void checkLimit(gcode::Limit limit, double value, std::string_view place, std::string_view what) {

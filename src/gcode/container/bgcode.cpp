@@ -180,13 +180,11 @@ std::optional<double> sumOf(std::string_view list) {
 
 void readIniMetadata(std::string_view text, std::vector<std::pair<std::string, std::string>>& metadata) {
     while (!text.empty()) {
-        const auto end = std::min(text.find('\n'), text.size());
-        const std::string_view line = text.substr(0, end);
+        const std::string_view line = takePiece(text, '\n');
         const auto equals = line.find('=');
         if (equals != std::string_view::npos)
             metadata.emplace_back(oneLine(trim(line.substr(0, equals), kBlank)),
                                   oneLine(trim(line.substr(equals + 1), kBlank)));
-        text.remove_prefix(std::min(end + 1, text.size()));
     }
 }
 

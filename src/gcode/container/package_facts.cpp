@@ -1,10 +1,11 @@
 #include "gcode/container/package_facts.h"
 
+#include "base/text.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 
 namespace stratum::gcode {
 namespace {
@@ -98,10 +99,8 @@ PackageFacts readSliceInfo(std::string_view xml, int plate) {
         if (!id.empty() && !name.empty()) facts.object_names.emplace_back(id, unescape(name));
     });
     forTags(here, "filament", [&](std::string_view tag) {
-        const std::string_view id = attribute(tag, "id");
-        std::size_t number = 0;
-        const auto [end, status] = std::from_chars(id.data(), id.data() + id.size(), number);
-        if (status != std::errc{} || number == 0 || number > kMostFilaments) return;
+        const std::size_t number = parsed<std::size_t>(attribute(tag, "id")).value_or(0);
+        if (number == 0 || number > kMostFilaments) return;
         if (facts.filament_colors.size() < number) facts.filament_colors.resize(number);
         if (facts.stated.materials.size() < number) facts.stated.materials.resize(number);
         facts.filament_colors[number - 1] = parseColor(attribute(tag, "color"));

@@ -136,6 +136,8 @@ void unpackZipEntry(zip_t* archive, zip_uint64_t index, std::string_view name, s
         fail(fmt::format("would unpack to {} bytes from {}, more than the {} of any print; unzip it to see what it is",
                          status.size, status.comp_size, most));
     const std::unique_ptr<zip_file_t, ZipDiscard> file(zip_fopen_index(archive, index, 0));
+    if (!file && zip_error_code_zip(zip_get_error(archive)) == ZIP_ER_NOPASSWD)
+        fail("is encrypted; unzip it with its password, or export the file again without one");
     if (!file) fail(fmt::format("can't be unzipped ({}); copy or export the file again", zip_strerror(archive)));
     // One byte more than the size: libzip checks size and CRC32 only in the read that reaches the end.
     char* const start = text.extend(status.size + 1);

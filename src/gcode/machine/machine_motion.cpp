@@ -19,6 +19,7 @@ constexpr int kMostTurns = 100;  // Marlin's bound on P
 // Filament retracted further than this, in mm, is unloaded: the longest retractions of Bowden printers are 16 mm,
 // unloading takes 50 and more.
 constexpr double kUnloaded = 25;
+constexpr double kMostClimb = 50;         // layers that a line rises through, steeply; wireframes have less
 constexpr double kThinnestThread = 0.05;  // mm of diameter, of one that goes straight up; less is rounding
 constexpr double kThickestThread = 1.5;   // more is a purge
 constexpr double kSwitchedHeight = 0.25;  // mm, typical of printers with switched extruders (M101, M103)
@@ -154,6 +155,10 @@ void Machine::move(const Command& command, int motion) {
     const bool switched = motor_on_ && motion > 0 && settings_.extrusion.drive == ExtrusionScan::Drive::switched;
     if (extrusion > 0 || switched) {
         drive_per_extrusion_ = extrusion > 0 ? drive / extrusion : 0;
+        const double climb = target.z - at.z;
+        if (nominal_height_ > 0 && climb > kMostClimb * nominal_height_ &&
+            climb > norm(target.x - at.x, target.y - at.y))
+            warn(fmt::format("a line of plastic climbs by {:.1f} mm; is its Z damaged?", climb));
         if (motion < 2)
             runPath(target, std::nullopt, extrusion);
         else if (motion == 5)

@@ -84,10 +84,10 @@ void MotionRecorder::byAxis(const Command& command, Limit first, double scale, s
                  command.value(kLetters[axis]) * scale, line);
 }
 
-void MotionRecorder::setAcceleration(const Command& command, std::uint32_t line) {
+void MotionRecorder::setAcceleration(const Command& command, double unit, std::uint32_t line) {
     const auto read = [&](char letter, Limit limit, double bound) {
-        if (command.hasValue(letter) && take(limit, fmt::format("M204 {}", letter), command.value(letter), line) &&
-            bound > 0)
+        if (command.hasValue(letter) &&
+            take(limit, fmt::format("M204 {}", letter), command.value(letter) * unit, line) && bound > 0)
             valueOf(limits_, limit) = std::min(valueOf(limits_, limit), bound);
     };
     if (isKlipper()) {
@@ -116,18 +116,19 @@ void MotionRecorder::suggest(CornerRule rule) {
     if (!settings_.rule_chosen) limits_.rule = rule;
 }
 
-void MotionRecorder::setCorners(const Command& command, std::uint32_t line) {
-    byAxis(command, Limit::jerk, 1, line);
+void MotionRecorder::setCorners(const Command& command, double unit, std::uint32_t line) {
+    byAxis(command, Limit::jerk, unit, line);
     // One X stands for the plane, as in legacy Marlin.
-    const bool refused = !(command.value('X') >= boundsOf(Limit::jerk).least);
+    const bool refused = !(command.value('X') * unit >= boundsOf(Limit::jerk).least);
     if (command.hasValue('X') && !command.hasValue('Y') && !refused)
         change(ofAxis(Limit::jerk, 1), limits_.jerk[0], line);
-    if (command.hasValue('S')) take(Limit::least_printing_speed, "M205 S", command.value('S'), line);
-    if (command.hasValue('T')) take(Limit::least_travel_speed, "M205 T", command.value('T'), line);
+    if (command.hasValue('S')) take(Limit::least_printing_speed, "M205 S", command.value('S') * unit, line);
+    if (command.hasValue('T')) take(Limit::least_travel_speed, "M205 T", command.value('T') * unit, line);
     if (!command.hasValue('J')) return;
     // J0 is written for machines with classic jerk.
     if (command.value('J') == 0) return suggest(settings_.limits.rule);
-    if (take(Limit::junction_deviation, "M205 J", command.value('J'), line)) suggest(CornerRule::junction_deviation);
+    if (take(Limit::junction_deviation, "M205 J", command.value('J') * unit, line))
+        suggest(CornerRule::junction_deviation);
 }
 
 void MotionRecorder::setRetraction(const Command& command, Retraction& retraction, double unit) {
@@ -213,10 +214,10 @@ void MotionRecorder::command(const Command& command, double unit, std::uint32_t 
             byAxis(command, Limit::speed, unit * per_second, line);
             break;
         case 204:
-            setAcceleration(command, line);
+            setAcceleration(command, unit, line);
             break;
         case 205:
-            setCorners(command, line);
+            setCorners(command, unit, line);
             break;
         case 207:
             return setRetraction(command, retract_, unit);

@@ -70,8 +70,8 @@ private:
     };
 
     void byAxis(const Command& command, Limit first, double scale, std::uint32_t line);
-    void setAcceleration(const Command& command, std::uint32_t line);
-    void setCorners(const Command& command, std::uint32_t line);
+    void setAcceleration(const Command& command, double unit, std::uint32_t line);
+    void setCorners(const Command& command, double unit, std::uint32_t line);
     void setRetraction(const Command& command, Retraction& retraction, double unit);
     void runRetraction(const Retraction& retraction, double sign, std::uint32_t line);
     /// As PrusaSlicer and its kin estimate it: a move to 0 at the speed of the last move.

@@ -35,9 +35,7 @@ std::string inflated(std::string& bytes) {
 void addAll(std::string_view profile, char separator, std::optional<std::size_t> extruder,
             std::vector<CuraSetting>& settings) {
     while (!profile.empty()) {
-        const auto cut = std::min(profile.find(separator), profile.size());
-        const std::string_view one = profile.substr(0, cut);
-        profile.remove_prefix(std::min(cut + 1, profile.size()));
+        const std::string_view one = takePiece(profile, separator);
         const auto equals = one.find('=');
         if (equals == std::string_view::npos) continue;
         const std::string_view key = trim(one.substr(0, equals));

@@ -30,11 +30,9 @@ std::optional<bool> flag(std::string_view text) {
 std::vector<double> diameters(std::string_view text, std::string_view separators) {
     std::vector<double> values;
     while (!text.empty()) {
-        const auto cut = std::min(text.find_first_of(separators), text.size());
-        const auto value = positiveNumber(text.substr(0, cut), 100);
+        const auto value = positiveNumber(takePiece(text, separators), 100);
         if (!value) return {};
         values.push_back(*value);
-        text.remove_prefix(std::min(cut + 1, text.size()));
     }
     return values;
 }
@@ -232,7 +230,7 @@ private:
             settings.tool_offsets = parseToolOffsets(value).value_or(std::vector<Point>());
             const auto isZero = [](const Point& offset) { return offset.x == 0 && offset.y == 0; };
             if (std::ranges::all_of(settings.tool_offsets, isZero)) settings.tool_offsets.clear();
-        } else if (key == "nozzle_diameter") {
+        } else if (key == "nozzle_diameter" || key == "Nozzle diameter") {
             settings.nozzle_diameter = positiveNumber(value, 100);
         } else if (key == "extrusion_width" || key == "line_width" || key == "extrusionWidth") {
             if (value.find('%') == std::string_view::npos) settings.extrusion_width = positiveNumber(value, 100);
@@ -273,7 +271,7 @@ private:
                    text.starts_with("BambuStudio ") || text.starts_with("KISSlicer") || text.starts_with("CraftWare")) {
             name(upTo(text, " - "));
         } else if (takePrefix(text, "Sliced by ")) {
-            name(upTo(text, ","));
+            name(upTo(upTo(text, ","), " on "));
         } else if (text.starts_with("Miracle-Grue ") || text.starts_with("Miracle Grue ") ||
                    takePrefix(text, "Generated with: ") ||  // REALvision
                    takePrefix(text, "GENERATOR.NAME:")) {
@@ -316,6 +314,8 @@ private:
         if (flavor != "UltiGCode" && flavor != "Marlin(Volumetric)") return;
         settings.volumetric_e = true;
         settings.volumetric_reason = std::string("the file's FLAVOR is ").append(flavor);
+        // An Ultimaker 2 counts absolutely, and such files have no M82.
+        if (flavor == "UltiGCode" && !settings.relative_e) settings.relative_e = false;
     }
 };
 

@@ -26,6 +26,7 @@ constexpr std::array kTrailers{
     Trailer{"Flash Studio", {"; EXECUTABLE_BLOCK_END", "; CONFIG_BLOCK_END", "; filament used ["}},
     Trailer{"Slic3r", {"; filament used = ", "; filament used [", "; top_solid_layers = "}},
     Trailer{"Cura 15", {}},  // its first versions wrote nothing there
+    Trailer{"Cura_SteamEngine 15", {}},
     Trailer{
         "Cura",
         {";End of Gcode", ";SETTING_3 ", ";End of gcode", ";CURA_PROFILE_STRING:", "; End of Gcode", "; SETTING_3 "}},

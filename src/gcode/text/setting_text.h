@@ -33,11 +33,7 @@ inline std::optional<std::pair<std::string_view, std::string_view>> keyAndValue(
 /// The parts of a list, without blanks and quotes. A separator at the end makes no part.
 inline std::vector<std::string_view> partsOf(std::string_view text, std::string_view separators) {
     std::vector<std::string_view> parts;
-    while (!text.empty() && parts.size() < kMostParts) {
-        const auto cut = std::min(text.find_first_of(separators), text.size());
-        parts.push_back(trimQuoted(text.substr(0, cut)));
-        text.remove_prefix(std::min(cut + 1, text.size()));
-    }
+    while (!text.empty() && parts.size() < kMostParts) parts.push_back(trimQuoted(takePiece(text, separators)));
     return parts;
 }
 
@@ -81,9 +77,8 @@ template <typename Visit>
 void forEachSettingsComment(std::string_view bytes, const Visit& visit) {
     for (std::string_view part : {bytes.substr(0, kSettingsReach), settingsTail(bytes)})
         while (!part.empty()) {
-            const auto end = std::min(part.find_first_of("\r\n"), part.size());
-            if (part.front() == ';' || part.front() == '(') visit(part.front(), part.substr(1, end - 1));
-            part.remove_prefix(std::min(end + 1, part.size()));
+            const std::string_view line = takePiece(part, "\r\n");
+            if (line.starts_with(';') || line.starts_with('(')) visit(line.front(), line.substr(1));
         }
 }
 

@@ -5,7 +5,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cstddef>
 
 namespace stratum::gcode {
@@ -19,7 +18,9 @@ struct Signs {
     std::size_t mills = 0;    // drilling cycles, lengths and changes of cutters
     std::size_t pens = 0;     // servos
     std::size_t plunges = 0;  // moves below z = 0
-    std::size_t tool_changes = 0, heats = 0;
+    std::size_t tool_changes = 0;
+    std::size_t prints = 0;  // commands that only printers have
+    bool relative = false;
     bool says_laser = false;
     bool says_pen = false;
 };
@@ -33,17 +34,23 @@ void addWords(std::string_view comment, Signs& signs) {
     if (says(text, "endmill") || says(text, "end mill") || says(text, "spindle") || says(text, "cutter")) ++signs.mills;
 }
 
+bool goesDown(const Command& command, const Signs& signs) {
+    return !signs.relative && command.hasValue('Z') && command.value('Z') < 0;
+}
+
 void addCommand(const Command& command, Signs& signs) {
     if (command.letter == 'M') {
         if (command.code == 3 || command.code == 4) ++signs.starts;
         if (command.code == 6) ++signs.tool_changes;
-        if (command.code == 104 || command.code == 109 || command.code == 140) ++signs.heats;
+        if (command.code == 104 || command.code == 109 || command.code == 140) ++signs.prints;
         if (command.code == 280) ++signs.pens;
     } else if (command.letter == 'G') {
+        if (command.code == 90 || command.code == 91) signs.relative = command.code == 91;
+        if (command.code == 161 || command.code == 162) ++signs.prints;  // MakerBot's homing
         if (command.code == 43 || (command.code >= 81 && command.code <= 89)) ++signs.mills;
         if (command.code <= 3 && command.hasValue('S')) ++signs.burns;
-        if (command.code <= 3 && command.hasValue('Z') && command.value('Z') < 0) ++signs.plunges;
-    } else if (command.kind == Command::Kind::words && command.hasValue('Z') && command.value('Z') < 0) {
+        if (command.code <= 3 && goesDown(command, signs)) ++signs.plunges;
+    } else if (command.kind == Command::Kind::words && goesDown(command, signs)) {
         ++signs.plunges;
     }
 }
@@ -60,16 +67,25 @@ std::string_view placeholderIn(std::string_view line) {
                                                      : std::string_view();  // LinuxCNC's "[ABS[#<_h>]]" is a sum
 }
 
+// "{global.bed}" or "{move.axes[2].max}": RepRapFirmware's object model. Placeholders of slicers have no dots.
+bool isExpression(std::string_view placeholder) {
+    const auto end =
+        placeholder.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ[]0123456789", 1);
+    return placeholder.front() == '{' && end != std::string_view::npos && placeholder[end] == '.';
+}
+
 std::string templateIn(std::string_view bytes) {
-    for (std::size_t number = 1; !bytes.empty(); ++number) {
-        const auto end = std::min(bytes.find('\n'), bytes.size());
-        if (const auto found = placeholderIn(bytes.substr(0, end)); !found.empty())
-            return fmt::format(
-                "a template: line {} has {}, which a slicer replaces by a value; slice a model with it "
-                "and give the .gcode file that the slicer saves",
-                number, found.substr(0, 60));
-        bytes.remove_prefix(std::min(end + 1, bytes.size()));
-    }
+    for (std::size_t number = 1; !bytes.empty(); ++number)
+        if (const auto found = placeholderIn(takePiece(bytes, '\n')); !found.empty())
+            return isExpression(found)
+                       ? fmt::format(
+                             "a macro: line {} has {}, which RepRapFirmware computes; give the "
+                             ".gcode file that a slicer saves",
+                             number, found.substr(0, 60))
+                       : fmt::format(
+                             "a template: line {} has {}, which a slicer replaces by a value; slice a model with it "
+                             "and give the .gcode file that the slicer saves",
+                             number, found.substr(0, 60));
     return {};
 }
 
@@ -86,7 +102,7 @@ std::string describeTrade(std::string_view bytes) {
         for (std::size_t i = 0; i < line.count; ++i) addCommand(line.commands[i], signs);
     }
     // MakerBot's M6 waits for a tool to be hot.
-    const bool plunges = signs.mills > 0 || signs.plunges > 0 || (signs.tool_changes > 0 && signs.heats == 0);
+    const bool plunges = signs.mills > 0 || (signs.prints == 0 && signs.plunges + signs.tool_changes > 0);
     if (signs.says_laser || (signs.burns > 0 && signs.starts > 0 && !plunges)) return "a program for a laser";
     if (signs.says_pen || signs.pens > 0) return "a program for a pen plotter";
     if (plunges) return "a program for a mill or router (CNC)";

@@ -176,7 +176,7 @@ void StatedReader::pair(std::string_view key, std::string_view value) {
     } else if (key == "printer_model" || key == "printer_name") {
         if (!value.empty()) facts_.printer = value;
     } else if (key == "printer_settings_id") {
-        profile_ = value;
+        if (!value.ends_with(".3mf")) profile_ = value;  // of a project, as Canvas has it
     } else if (key == "layer_height" || key == "sliceHeight" || key == "layer_thickness_mm" ||
                key == "layerThickness") {
         if (const auto height = positiveNumber(value, 100)) facts_.layer_height = height;

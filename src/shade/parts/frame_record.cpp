@@ -36,6 +36,7 @@ void FrameRecord::add(const std::filesystem::path& picture, const std::string& s
     entries_[picture.filename().string()] = {scene, sha256Hex(InputFile(picture).bytes())};
     std::string text = std::string("# by ") + kProgramMark + '\n';
     for (const auto& [name, entry] : entries_) text += entry.scene + ' ' + entry.bytes + ' ' + name + '\n';
+    const Replacement may(path_);  // a damaged one may have lost its mark
     writeFile(path_, text);
 }
 

@@ -133,7 +133,8 @@ std::uint32_t crcOf(const Json& json, const Metadata& metadata) {
 }
 
 Part partOf(const std::string& text, const Metadata& metadata) {
-    Json json = Json::parse(text);
+    Json json = Json::parse(text, nullptr, false);
+    if (json.is_discarded()) throw std::runtime_error("its description is no JSON");
     Part part;
     part.metadata = metadata;
     if (numberOf<int>(json.at("format")) != kFormat) throw std::runtime_error("its format is of another version");

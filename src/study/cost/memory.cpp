@@ -243,8 +243,7 @@ StudyReport studyMemory(const MemoryOptions& options, const StudyOptions& common
                 if (const Row& row = table.rows().back(); row.back() != kOk)
                     report.findings.push_back(
                         fmt::format("{} at {} mm, {}: {}", row[0], table.text(row, "voxel_mm"), way, row.back()));
-                if (common.progress)
-                    common.progress(static_cast<double>(table.rows().size()) / static_cast<double>(all));
+                common.tell(table.rows().size(), all);
             }
     Page page("Memory against voxel size", common.command);
     page.paragraph(

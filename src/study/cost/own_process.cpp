@@ -11,6 +11,7 @@
 #include <unistd.h>
 
 #include <array>
+#include <cerrno>
 #include <chrono>
 #include <csignal>
 #include <exception>
@@ -28,6 +29,7 @@ constexpr char kThrew = '-';
 bool writeAll(int descriptor, std::string_view text) {
     while (!text.empty()) {
         const ssize_t sent = ::write(descriptor, text.data(), text.size());
+        if (sent < 0 && errno == EINTR) continue;
         if (sent <= 0) return false;
         text.remove_prefix(static_cast<std::size_t>(sent));
     }
@@ -54,6 +56,7 @@ bool readUntil(int in, std::chrono::steady_clock::time_point end, std::string& t
         pollfd wait{in, POLLIN, 0};
         if (left <= 0 || ::poll(&wait, 1, static_cast<int>(left)) == 0) return false;
         const ssize_t got = ::read(in, part.data(), part.size());
+        if (got < 0 && errno == EINTR) continue;
         if (got <= 0) return true;
         text.append(part.data(), static_cast<std::size_t>(got));
     }

@@ -105,8 +105,7 @@ Table studyCorner(const DepositOptions&, const StudyOptions& common, Page& page,
         if (c.lag == c.advance && std::abs(ratio - 1) > kNoBulge)
             report.findings.push_back(
                 fmt::format("a corner with K = T = {:g} s is {} of its line's width", c.lag, ratio));
-        if (common.progress)
-            common.progress(static_cast<double>(table.rows().size()) / static_cast<double>(all.size()));
+        common.tell(table.rows().size(), all.size());
     }
     page.heading("Corners");
     page.paragraph(fmt::format(

@@ -155,8 +155,7 @@ Table studyRoughness(const DepositOptions&, const StudyOptions& common, Page& pa
         // Corners of two voxels; of one in a quick look.
         const int per_layer = std::max(common.quick ? 4 : 8, (common.quick ? 200 : 400) / wall.section);
         table.add(roughnessOf(wall, per_layer));
-        if (common.progress)
-            common.progress(static_cast<double>(table.rows().size()) / static_cast<double>(walls.size()));
+        common.tell(table.rows().size(), walls.size());
     }
     page.heading("Roughness");
     page.paragraph(fmt::format(

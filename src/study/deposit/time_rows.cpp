@@ -60,8 +60,7 @@ Table studyTimes(const DepositOptions& options, const StudyOptions& common, Page
             series.points.emplace_back(table.number(row, "stated_s"), off);
             sizes.push_back(std::abs(off));
         }
-        if (common.progress)
-            common.progress(static_cast<double>(table.rows().size()) / static_cast<double>(files.size()));
+        common.tell(table.rows().size(), files.size());
     }
     page.heading("Times");
     page.paragraph(

@@ -246,8 +246,7 @@ StudyReport studyGeometry(const GeometryOptions& options, const StudyOptions& co
             joined({name, hash, options.layers.empty() ? "all" : options.layers, std::to_string(points), c.beads_are,
                     c.lattice, fmt::format("{:g}", c.per_layer), fmt::format("{:g}", c.half_width), c.precision},
                    measure(*subject, c, common.quick ? 1 : 3)));
-        if (common.progress)
-            common.progress(static_cast<double>(table.rows().size()) / static_cast<double>(all.size()));
+        common.tell(table.rows().size(), all.size());
     }
     Page page("Geometric error against voxel size and time", common.command);
     page.paragraph(fmt::format(

@@ -234,8 +234,7 @@ Table studyScenes(const PolygonsOptions& options, const PeerTracers& peers, cons
     std::vector<SceneResult> results;
     for (const std::string& scene : options.scenes) {
         results.push_back(measureScene(scene, peers, frames, table, page, common.quick));
-        if (common.progress)
-            common.progress(static_cast<double>(results.size()) / static_cast<double>(options.scenes.size()));
+        common.tell(results.size(), options.scenes.size());
     }
     Plot plot{"A frame on one core", "scene", "CPU seconds", false, true, {}};
     for (const char* name :

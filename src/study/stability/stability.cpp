@@ -57,8 +57,7 @@ StudyReport studyStability(const StudyOptions& common) {
         if (table.text(row, "verdict") != kPassed)
             report.findings.push_back(fmt::format("{}, {}: {} is {}, tolerance {:.4g}", test.family, test.name,
                                                   test.quantity, table.text(row, "measured"), test.tolerance));
-        if (common.progress)
-            common.progress(static_cast<double>(table.rows().size()) / static_cast<double>(cases.size()));
+        common.tell(table.rows().size(), cases.size());
     }
     Page page("Stiff and extreme cases", common.command);
     page.paragraph(fmt::format(

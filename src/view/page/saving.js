@@ -12,13 +12,14 @@ export class Saving {
     byId("save").addEventListener("click", () => this.#press());
     const { connection } = page;
     for (const type of ["hello", "failed"]) connection.on(type, () => this.stop()); // the server knows nothing of it any more
+    connection.on("not-saved", ({ text }) => this.#goesOn && this.stop(`not saved: ${text}`));
     connection.on("saving", ({ done }) => this.#goesOn && page.say(`saving … ${Math.round(done * 100)} %`));
     connection.on("picture", ({ kind, file }) => kind === "saved" && this.#take(file));
   }
 
   /** What it waits for will not come. */
-  stop() {
-    if (this.#goesOn) this.page.say("not saved");
+  stop(why = "not saved") {
+    if (this.#goesOn) this.page.say(why);
     this.#set(false);
   }
   #press() {

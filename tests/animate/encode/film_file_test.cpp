@@ -1,6 +1,7 @@
 #include "animate/encode/film_file.h"
 
 #include "base/error.h"
+#include "refusal.h"
 
 #include <gtest/gtest.h>
 
@@ -20,12 +21,7 @@ FilmFormat formatOf(int width, int height, std::size_t frames, double rate) {
 }
 
 std::string complaint(const std::string& path, const FilmFormat& format) {
-    try {
-        requireFilm(path, format);
-    } catch (const UsageError& error) {
-        return error.what();
-    }
-    return "none";
+    return test::messageOf<UsageError>([&] { requireFilm(path, format); }, "none");
 }
 
 TEST(FilmFile, ItsKindIsThatOfItsName) {

@@ -3,6 +3,7 @@
 #include "assemble/scene_file.h"
 #include "base/error.h"
 #include "corpus.h"
+#include "refusal.h"
 #include "scratch_folder.h"
 #include "shade/finish/named_brdf.h"
 #include "shade/integrator/render.h"
@@ -56,12 +57,7 @@ TEST(ObjectFile, ReadsEveryKey) {
 TEST(ObjectFile, SaysWhatIsWrong) {
     const test::ScratchFolder scratch;
     const auto refused = [&](const char* objects, const char* words) {
-        try {
-            scene(scratch, objects);
-            ADD_FAILURE() << objects;
-        } catch (const InputError& error) {
-            EXPECT_NE(std::string(error.what()).find(words), std::string::npos) << error.what();
-        }
+        EXPECT_TRUE(test::refuses<InputError>(words, [&] { scene(scratch, objects); })) << objects;
     };
     refused("", "objects: expected a list of objects");
     refused("3", "objects[0]: expected an object");

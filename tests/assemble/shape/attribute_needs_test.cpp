@@ -8,12 +8,7 @@
 namespace stratum::assemble {
 namespace {
 
-ObjectOptions objectOf(const std::string& vdb, const std::string& grid = "") {
-    ObjectOptions object;
-    object.vdb = vdb;
-    object.grid = grid;
-    return object;
-}
+ObjectOptions objectOf(const std::string& vdb, const std::string& grid = "") { return {.vdb = vdb, .grid = grid}; }
 
 TEST(AttributeNeeds, NumbersNamesInTheirOrder) {
     AttributeNeeds needs;

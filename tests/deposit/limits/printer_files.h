@@ -3,6 +3,7 @@
 
 #include "base/error.h"
 #include "deposit/printer.h"
+#include "refusal.h"
 #include "scratch_folder.h"
 
 #include <gtest/gtest.h>
@@ -31,12 +32,7 @@ public:
 
     /// What the InputError says; empty if there is none.
     std::string refusal(std::string_view text) const {
-        try {
-            read(text);
-        } catch (const InputError& error) {
-            return error.what();
-        }
-        return {};
+        return test::messageOf<InputError>([&] { read(text); });
     }
 
 private:

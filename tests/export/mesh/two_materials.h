@@ -2,11 +2,9 @@
 #pragma once
 
 #include "export/mesh/surface_mesh.h"
+#include "scratch_folder.h"
 
-#include <filesystem>
-#include <fstream>
-#include <iterator>
-#include <string>
+#include <cstdint>
 
 namespace stratum::test {
 
@@ -19,11 +17,6 @@ inline exporter::SurfaceMesh twoMaterials() {
     mesh.materials = {{"tool_0", {255, 128, 0}}, {"tool_1", {0, 0, 255}}};
     mesh.material_of_point = {1, 1, 1, 0, 0};
     return mesh;
-}
-
-inline std::string bytesOf(const std::filesystem::path& path) {
-    std::ifstream file(path, std::ios::binary);
-    return {std::istreambuf_iterator<char>(file), {}};
 }
 
 }  // namespace stratum::test

@@ -5,6 +5,7 @@
 #include "corpus.h"
 #include "gcode/container_samples.h"
 #include "gcode/program.h"
+#include "refusal.h"
 
 #include <gtest/gtest.h>
 
@@ -20,12 +21,7 @@ using sample::little;
 const std::string kIni = little(0, 2);
 
 std::string bgcodeError(const std::string& bytes, const ContainerLimits& limits = {}) {
-    try {
-        openBgcode(bytes, "a.bgcode", limits);
-    } catch (const InputError& error) {
-        return error.what();
-    }
-    return "no error";
+    return test::messageOf<InputError>([&] { openBgcode(bytes, "a.bgcode", limits); }, "no error");
 }
 
 TEST(Bgcode, EveryCompressionAndEncoding) {

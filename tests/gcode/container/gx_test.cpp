@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "gcode/container_samples.h"
 #include "gcode/program.h"
+#include "refusal.h"
 
 #include <gtest/gtest.h>
 
@@ -14,12 +15,7 @@ namespace {
 using sample::little;
 
 std::string gxError(const std::string& bytes) {
-    try {
-        openGx(bytes, "a.gx");
-    } catch (const InputError& error) {
-        return error.what();
-    }
-    return "no error";
+    return test::messageOf<InputError>([&] { openGx(bytes, "a.gx"); }, "no error");
 }
 
 TEST(Gx, TheTextStaysAView) {

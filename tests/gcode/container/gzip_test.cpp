@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "gcode/container_samples.h"
+#include "refusal.h"
 
 #include <gtest/gtest.h>
 
@@ -11,12 +12,7 @@ namespace stratum::gcode {
 namespace {
 
 std::string gzipError(std::string_view bytes, const ContainerLimits& limits = {}) {
-    try {
-        openGzip(bytes, "a.gz", limits);
-    } catch (const InputError& error) {
-        return error.what();
-    }
-    return "";
+    return test::messageOf<InputError>([&] { openGzip(bytes, "a.gz", limits); });
 }
 
 TEST(Gzip, MembersInARow) {

@@ -1,6 +1,7 @@
 #include "gcode/container/container.h"
 
 #include "base/error.h"
+#include "refusal.h"
 
 #include <gtest/gtest.h>
 
@@ -62,12 +63,7 @@ TEST(Sniff, OtherPeoplesFiles) {
         {"#?RADIANCE\n", "map of light"},
     };
     for (const SniffCase& c : cases) {
-        try {
-            refuseOtherFormats(c.bytes, "a.gcode");
-            ADD_FAILURE() << c.message;
-        } catch (const InputError& error) {
-            EXPECT_NE(std::string(error.what()).find(c.message), std::string::npos) << error.what();
-        }
+        EXPECT_TRUE(test::refuses<InputError>(c.message, [&] { refuseOtherFormats(c.bytes, "a.gcode"); })) << c.message;
     }
 }
 

@@ -5,6 +5,7 @@
 #include "corpus.h"
 #include "gcode/container_samples.h"
 #include "gcode/program.h"
+#include "refusal.h"
 
 #include <gtest/gtest.h>
 
@@ -16,12 +17,7 @@ namespace {
 
 template <typename Error>
 std::string zipError(const std::string& bytes, std::optional<int> plate = {}, const ContainerLimits& limits = {}) {
-    try {
-        openZip(bytes, "a.zip", plate, limits);
-    } catch (const Error& error) {
-        return error.what();
-    }
-    return "no error";
+    return test::messageOf<Error>([&] { openZip(bytes, "a.zip", plate, limits); }, "no error");
 }
 
 TEST(ZipContainer, TheOnlyPlate) {

@@ -10,6 +10,17 @@
 namespace stratum::gcode {
 namespace {
 
+// A Cura file with "Z82" for "Z.2": the rest of that layer lies 75 mm above the print.
+TEST(Machine, ALineThatClimbsFarIsTold) {
+    const std::string head =
+        ";Generated with Cura_SteamEngine 5.4.0\n;Layer height: 0.2\nM82\n;LAYER:0\nG0 X10 Y10 Z.2\n";
+    const auto warnings = [&](const std::string& rest) {
+        return warningCount(readProgram(head + "G1 X50 Y10 E1.33\n" + rest + ";End of Gcode\n"), "is its Z damaged?");
+    };
+    EXPECT_EQ(warnings("G1 X50 Y50 Z82 E2.66\nG1 X10 Y50 E3.99\n"), 1U);
+    EXPECT_EQ(warnings("G1 X50 Y50 Z.4 E2.66\nG1 X55 Y50 Z5 E3\n"), 0U);
+}
+
 void expectStart(const Bead& bead, double x, double y, double z) {
     EXPECT_NEAR(bead.x0, x, 1e-12);
     EXPECT_NEAR(bead.y0, y, 1e-12);

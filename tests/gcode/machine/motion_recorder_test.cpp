@@ -94,6 +94,11 @@ TEST(MotionRecorder, TakesLimits) {
     EXPECT_EQ(log.last.jerk[1], 5);
     EXPECT_EQ(log.last.printing, 800);
     EXPECT_EQ(log.last.travel, 800);
+    // Marlin reads these in the unit of lengths (gcode/config/M200-M205.cpp, value_linear_units).
+    record("G20\nM83\nM204 S40\nM205 X.5 S.25\nG1 X1 E.01\n", log);
+    EXPECT_EQ(log.last.printing, 40 * 25.4);
+    EXPECT_EQ(log.last.jerk[1], 0.5 * 25.4);
+    EXPECT_EQ(log.last.least_printing_speed, 0.25 * 25.4);
     record("M83\nM205 J0.02\nG1 X1 E1\n", log);
     EXPECT_EQ(log.last.junction_deviation, 0.02);
     EXPECT_EQ(log.last.rule, CornerRule::junction_deviation);

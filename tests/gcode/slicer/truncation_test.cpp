@@ -25,6 +25,7 @@ TEST(Truncation, OfKnownOnesTheTrailer) {
     EXPECT_NE(findCut("; filament used [mm] = 1\nG1 X1\n", "PrusaSlicer 2.6.0"), "");  // in its header
     EXPECT_NE(findCut("G1 X1\n", "Cura_SteamEngine 4.13.0"), "");
     EXPECT_EQ(findCut("G1 X1\n;End of Gcode\n", "Cura_SteamEngine 4.13.0"), "");
+    EXPECT_EQ(findCut("G1 X1\nM84 ; Turn steppers off\n", "Cura_SteamEngine 15.01"), "");  // it wrote nothing there
     // With the settings in front, as Orca for FlashForge writes them.
     EXPECT_EQ(findCut("; CONFIG_BLOCK_END\nG1 X1\nM73 P100 R0\n", "OrcaSlicer 2.3.0"), "");
     EXPECT_NE(findCut("; CONFIG_BLOCK_END\nM73 P99 R0\nG1 X1\n", "OrcaSlicer 2.3.0"), "");

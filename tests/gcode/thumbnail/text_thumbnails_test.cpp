@@ -1,6 +1,7 @@
 #include "gcode/thumbnail/text_thumbnails.h"
 
 #include "base/error.h"
+#include "refusal.h"
 
 #include <gtest/gtest.h>
 
@@ -88,13 +89,8 @@ TEST(TextThumbnails, ABlockWithoutAnEnd) {
     for (const char* text : {"; x\nG28\n; thumbnail begin 16x16 8\n; AAAA\n",
                              "; x\nG28\n; thumbnail begin 16x16 8\n; AAAA\nG1 X1\n; thumbnail end\n",
                              "; x\nG28\n; thumbnail begin 16x16 8\n; thumbnail_QOI end\n"})
-        try {
-            (void)patched(text);
-            FAIL() << text;
-        } catch (const InputError& error) {
-            EXPECT_NE(std::string(error.what()).find("a.gcode: line 3: a thumbnail begins here"), std::string::npos)
-                << error.what();
-        }
+        EXPECT_TRUE(test::refuses<InputError>("a.gcode: line 3: a thumbnail begins here", [&] { (void)patched(text); }))
+            << text;
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 #include "gcode/thumbnail/thumbnail.h"
 
 #include "base/error.h"
+#include "refusal.h"
 
 #include <gtest/gtest.h>
 
@@ -8,12 +9,7 @@ namespace stratum::gcode {
 namespace {
 
 std::string thumbnailError(std::string_view text) {
-    try {
-        (void)parseThumbnails(text);
-    } catch (const UsageError& error) {
-        return error.what();
-    }
-    return "no error";
+    return test::messageOf<UsageError>([&] { (void)parseThumbnails(text); }, "no error");
 }
 
 TEST(Thumbnail, SizesAndKinds) {

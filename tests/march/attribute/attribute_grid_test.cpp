@@ -3,13 +3,12 @@
 #include "base/error.h"
 #include "march/attribute/annotation.h"
 #include "march/brick/brick_intersector.h"
+#include "refusal.h"
 #include "scratch_folder.h"
 #include "spheres.h"
 
 #include <gtest/gtest.h>
 
-#include <fstream>
-#include <iterator>
 #include <limits>
 #include <string>
 
@@ -99,12 +98,7 @@ TEST_F(AttributeGrid, CountsWhatIsNoNumber) {
 
 TEST_F(AttributeGrid, RefusesWhatDoesNotFit) {
     const auto refusal = [&](const std::filesystem::path& path, const char* name) -> std::string {
-        try {
-            readAttributeGrid(path, name, *surface);
-        } catch (const InputError& error) {
-            return error.what();
-        }
-        return "(none)";
+        return test::messageOf<InputError>([&] { readAttributeGrid(path, name, *surface); }, "(none)");
     };
     const auto path = write({surface, tool, openvdb::GridBase::createGrid("Tree_bool_5_4_3")});
     EXPECT_EQ(refusal(path, "tool"), "(none)");
@@ -117,10 +111,9 @@ TEST_F(AttributeGrid, RefusesWhatDoesNotFit) {
     EXPECT_NE(refusal(write({surface, flags}), "flags").find("holds bool"), std::string::npos);
     // A type that this OpenVDB does not know stands beside the others.
     const auto other = write({surface, flags});
-    std::ifstream in(other, std::ios::binary);
-    std::string bytes((std::istreambuf_iterator<char>(in)), {});
+    std::string bytes = test::bytesOf(other);
     bytes.replace(bytes.find("Tree_bool"), 9, "Tree_wild");
-    std::ofstream(other, std::ios::binary) << bytes;
+    test::writeText(other, bytes);
     EXPECT_NE(refusal(other, "flags").find("holds Tree_wild_5_4_3"), std::string::npos) << refusal(other, "flags");
     EXPECT_NE(refusal("/nonexistent.vdb", "tool").find("can't be opened"), std::string::npos);
 }

@@ -5,6 +5,7 @@
 #include "march/file/level_set_file.h"
 #include "march/reference/reference_intersectors.h"
 #include "random_rays.h"
+#include "refusal.h"
 #include "rubble.h"
 
 #include <gtest/gtest.h>
@@ -224,12 +225,7 @@ TEST(GridAxes, TracedLengthsAreWorldUnits) {
 }
 
 std::string refusal(const openvdb::FloatGrid& grid) {
-    try {
-        requireTraceable(grid, "there");
-    } catch (const InputError& error) {
-        return error.what();
-    }
-    return "(none)";
+    return test::messageOf<InputError>([&] { requireTraceable(grid, "there"); }, "(none)");
 }
 
 TEST(GridAxes, ShearAndPerspectiveAreRefused) {

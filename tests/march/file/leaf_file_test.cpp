@@ -187,8 +187,7 @@ TEST_F(LeafFileTest, RefusesDamage) {
 // Bytes changed anywhere: refused, read as something else, but nothing worse.
 TEST_F(LeafFileTest, SurvivesChangedBytes) {
     const fs::path path = write({test::rubble(0.1F, false)}, kMask | kBlosc);
-    std::ifstream in(path, std::ios::binary);
-    const std::string good((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
+    const std::string good = test::bytesOf(path);
     std::mt19937 random(9);
     int refused = 0;
     for (int n = 0; n < 400; ++n) {

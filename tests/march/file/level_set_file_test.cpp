@@ -1,6 +1,7 @@
 #include "march/file/level_set_file.h"
 
 #include "base/error.h"
+#include "refusal.h"
 #include "scratch_folder.h"
 #include "spheres.h"
 
@@ -32,12 +33,7 @@ protected:
 
     // The error's text, which must carry the place and the remedy.
     static std::string refusal(const std::filesystem::path& path, const std::string& name = "") {
-        try {
-            readLevelSet(path, name);
-        } catch (const InputError& error) {
-            return error.what();
-        }
-        return "(no error)";
+        return test::messageOf<InputError>([&] { readLevelSet(path, name); }, "(no error)");
     }
 };
 

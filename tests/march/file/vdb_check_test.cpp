@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "march/file/level_set_file.h"
+#include "refusal.h"
 #include "rubble.h"
 #include "scratch_folder.h"
 
@@ -10,7 +11,6 @@
 
 #include <cstring>
 #include <fstream>
-#include <iterator>
 #include <string>
 
 namespace stratum::march {
@@ -29,18 +29,12 @@ protected:
         file.setCompression(compression);
         file.write(grids);
         file.close();
-        std::ifstream in(path, std::ios::binary);
-        return {std::istreambuf_iterator<char>(in), {}};
+        return test::bytesOf(path);
     }
 
     static std::string refusal(const std::string& bytes, VdbDepth depth = VdbDepth::leaves,
                                const std::string& name = "surface") {
-        try {
-            checkVdb(std::string_view(bytes), depth, name, "a.vdb");
-        } catch (const InputError& error) {
-            return error.what();
-        }
-        return "";
+        return test::messageOf<InputError>([&] { checkVdb(std::string_view(bytes), depth, name, "a.vdb"); });
     }
 
     // One leaf.

@@ -6,8 +6,6 @@
 
 #include <gtest/gtest.h>
 
-#include <fstream>
-#include <iterator>
 #include <map>
 
 namespace stratum::march {
@@ -27,8 +25,7 @@ protected:
         file.setCompression(compression);
         file.write(grids);
         file.close();
-        std::ifstream in(path, std::ios::binary);
-        return {std::istreambuf_iterator<char>(in), {}};
+        return test::bytesOf(path);
     }
 };
 

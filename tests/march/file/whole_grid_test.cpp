@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "march/file/vdb_check.h"
 #include "march/file/vdb_walker.h"
+#include "refusal.h"
 #include "rubble.h"
 #include "scratch_folder.h"
 
@@ -12,8 +13,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <fstream>
-#include <iterator>
 #include <limits>
 #include <random>
 
@@ -98,13 +97,8 @@ protected:
         if (!listed) io::DelayedLoadMetadata::registerType();
     }
 
-    std::string bytes() const {
-        std::ifstream in(path_, std::ios::binary);
-        return {std::istreambuf_iterator<char>(in), {}};
-    }
-    void overwrite(const std::string& bytes) const {
-        std::ofstream(path_, std::ios::binary).write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-    }
+    std::string bytes() const { return test::bytesOf(path_); }
+    void overwrite(const std::string& bytes) const { test::writeText(path_, bytes); }
 
     openvdb::GridBase::Ptr read(const std::string& name) const {
         const std::string all = bytes();
@@ -124,12 +118,7 @@ protected:
         return file.readGrid(name);
     }
     std::string refusal(const std::string& name) const {
-        try {
-            (void)read(name);
-        } catch (const InputError& error) {
-            return error.what();
-        }
-        return "";
+        return test::messageOf<InputError>([&] { (void)read(name); });
     }
 
     // Spheres of many leaves, tiles of all levels, and leaves of every kind of inactive values.

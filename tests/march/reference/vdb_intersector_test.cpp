@@ -1,6 +1,7 @@
 #include "march/reference/reference_intersectors.h"
 
 #include "base/error.h"
+#include "random_rays.h"
 #include "spheres.h"
 
 #include <gtest/gtest.h>
@@ -14,16 +15,13 @@
 namespace stratum::march {
 namespace {
 
+using test::randomDirection;
+
 constexpr double kRadius = 10;
 const glm::dvec3 kCenter(3, -2, 5);
 
 openvdb::FloatGrid::Ptr ball(float voxel = 0.2f) {
     return test::sphereGrid(static_cast<float>(kRadius), openvdb::Vec3f(3, -2, 5), voxel);
-}
-
-glm::dvec3 randomDirection(std::mt19937& random) {
-    std::normal_distribution<double> normal;
-    return glm::normalize(glm::dvec3(normal(random), normal(random), normal(random)));
 }
 
 TEST(VdbIntersector, HitsASphereWhereItIs) {

@@ -10,7 +10,6 @@
 #include <filesystem>
 #include <fstream>
 #include <limits>
-#include <sstream>
 
 namespace stratum::report {
 namespace {
@@ -64,12 +63,10 @@ TEST(ReportFile, WritesByItsEnding) {
         const std::filesystem::path path = folder.path() / name;
         EXPECT_TRUE(isReportPath(path));
         writeReport(report, path);
-        std::ifstream file(path);
-        std::stringstream text;
-        text << file.rdbuf();
-        EXPECT_FALSE(text.str().empty());
+        const std::string text = test::bytesOf(path);
+        EXPECT_FALSE(text.empty());
         if (path.extension() == ".json") {
-            EXPECT_EQ(nlohmann::ordered_json::parse(text.str()), toJson(report));
+            EXPECT_EQ(nlohmann::ordered_json::parse(text), toJson(report));
         }
     }
     PrintReport latin = report;

@@ -1,6 +1,7 @@
 #include "shade/camera/camera_pose.h"
 
 #include "base/error.h"
+#include "refusal.h"
 #include "shade/camera/camera.h"
 
 #include <gtest/gtest.h>
@@ -41,12 +42,7 @@ shade::Camera photographer(double fov = 31.0) {
 }
 
 std::string refusal(const std::vector<PointPair>& pairs) {
-    try {
-        solveCameraPose(pairs, kWidth, kHeight);
-    } catch (const InputError& error) {
-        return error.what();
-    }
-    return "(none)";
+    return test::messageOf<InputError>([&] { solveCameraPose(pairs, kWidth, kHeight); }, "(none)");
 }
 
 TEST(CameraPose, FindsTheCameraOfExactPairs) {

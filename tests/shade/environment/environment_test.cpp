@@ -1,6 +1,7 @@
 #include "shade/environment/environment.h"
 
 #include "base/error.h"
+#include "refusal.h"
 #include "scratch_folder.h"
 #include "shade/camera/sampler.h"
 #include "shade/camera/sampling.h"
@@ -217,12 +218,7 @@ TEST(MakeEnvironment, PresetsComeBeforeFilesOfTheirNames) {
 }
 
 TEST(MakeEnvironment, GuessesMistypedPresets) {
-    try {
-        makeEnvironment("studoi", {});
-        ADD_FAILURE();
-    } catch (const UsageError& error) {
-        EXPECT_NE(std::string_view(error.what()).find("did you mean 'studio'?"), std::string_view::npos);
-    }
+    EXPECT_TRUE(test::refuses<UsageError>("did you mean 'studio'?", [&] { makeEnvironment("studoi", {}); }));
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "corpus.h"
+#include "refusal.h"
 #include "scratch_folder.h"
 #include "shade/map_files.h"
 
@@ -28,12 +29,7 @@ TEST(LightMap, RefusesWhatGivesNoPicture) {
     const auto path = scratch.path() / "map.exr";
     const auto refused = [&](int width, int height, const std::vector<Color>& texels, const char* word) {
         test::writeExrMap(path, width, height, texels);
-        try {
-            readLightMap(path);
-            FAIL() << word;
-        } catch (const InputError& error) {
-            EXPECT_NE(std::string(error.what()).find(word), std::string::npos) << error.what();
-        }
+        EXPECT_TRUE(test::refuses<InputError>(word, [&] { readLightMap(path); })) << word;
     };
     refused(2, 1, {{1, 1, 1}, {std::nanf(""), 0, 0}}, "texel 1, 0");
     refused(2, 1, {{1, -1, 1}, {0, 0, 0}}, "33.3 %");

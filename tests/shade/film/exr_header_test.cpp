@@ -1,6 +1,7 @@
 #include "shade/film/exr.h"
 
 #include "base/error.h"
+#include "refusal.h"
 #include "scratch_folder.h"
 #include "shade/map_files.h"
 
@@ -8,8 +9,6 @@
 
 #include <bit>
 #include <cstring>
-#include <fstream>
-#include <iterator>
 #include <string>
 
 namespace stratum::shade {
@@ -20,8 +19,7 @@ constexpr std::size_t kMost = std::size_t{1} << 27;
 std::string smallMap() {
     const test::ScratchFolder scratch;
     test::writeExrMap(scratch / "map.exr", 8, 4, std::vector<Color>(32, Color(1.0f)));
-    std::ifstream file(scratch / "map.exr", std::ios::binary);
-    return {std::istreambuf_iterator<char>(file), {}};
+    return test::bytesOf(scratch / "map.exr");
 }
 
 /// Puts a number `behind` bytes behind the name, type and size of an attribute.
@@ -34,12 +32,7 @@ std::string with(std::string bytes, const std::string& name, const std::string& 
 }
 
 std::string refusal(const std::string& bytes, std::size_t most = kMost) {
-    try {
-        checkExrHeader(bytes, most, "map.exr");
-    } catch (const InputError& error) {
-        return error.what();
-    }
-    return "";
+    return test::messageOf<InputError>([&] { checkExrHeader(bytes, most, "map.exr"); });
 }
 
 TEST(ExrHeader, AcceptsWhatOpenExrWrote) {

@@ -1,6 +1,7 @@
 #include "shade/integrator/checkpoint.h"
 
 #include "base/error.h"
+#include "refusal.h"
 #include "scratch_folder.h"
 #include "shade/analytic_prints.h"
 #include "shade/integrator/render.h"
@@ -49,11 +50,6 @@ bool sameBytes(const shade::RenderResult& a, const shade::RenderResult& b) {
     return pa.size() == pb.size() && std::memcmp(pa.data(), pb.data(), pa.size() * sizeof pa[0]) == 0 &&
            a.film.layers()[0].values == b.film.layers()[0].values &&
            a.film.layers()[1].values == b.film.layers()[1].values && a.rays == b.rays && a.mean_spp == b.mean_spp;
-}
-
-std::string contents(const fs::path& path) {
-    std::ifstream file(path, std::ios::binary);
-    return {std::istreambuf_iterator<char>(file), {}};
 }
 
 TEST(Checkpoint, AnInterruptedRenderEndsAsAnUninterruptedOne) {
@@ -140,12 +136,7 @@ TEST(Checkpoint, OfAnotherPictureIsRefused) {
     const auto refused = [&](auto change, const char* brdf = "lambert:0.5,0.25,0.125") {
         shade::RenderOptions options = smallOptions(file);
         change(options);
-        try {
-            rendered(options, brdf);
-            FAIL() << "was taken";
-        } catch (const InputError& error) {
-            EXPECT_NE(std::string(error.what()).find("another picture"), std::string::npos) << error.what();
-        }
+        EXPECT_TRUE(test::refuses<InputError>("another picture", [&] { rendered(options, brdf); }));
     };
     refused([](auto& o) { o.seed = 1; });
     refused([](auto& o) { o.spp = 16; });
@@ -159,7 +150,7 @@ TEST(Checkpoint, DamageIsNoticed) {
     const test::ScratchFolder scratch;
     const fs::path file = scratch / "c";
     rendered(smallOptions(file));
-    const std::string good = contents(file);
+    const std::string good = test::bytesOf(file);
     const auto refused = [&](const std::string& bytes) {
         std::ofstream(file, std::ios::binary) << bytes;
         EXPECT_THROW(rendered(smallOptions(file)), InputError);

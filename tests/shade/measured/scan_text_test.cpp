@@ -1,6 +1,7 @@
 #include "shade/measured/scan_text.h"
 
 #include "base/error.h"
+#include "refusal.h"
 
 #include <gtest/gtest.h>
 
@@ -23,12 +24,7 @@ TEST(ScanText, ReadsLinesCommentsAndNumbers) {
 
 TEST(ScanText, ErrorsNameTheLine) {
     ScanText text("1 2\n3 x\n", "part.bsdf");
-    try {
-        text.numbers(4, "a reading");
-        FAIL();
-    } catch (const InputError& error) {
-        EXPECT_NE(std::string(error.what()).find("part.bsdf: line 2"), std::string::npos) << error.what();
-    }
+    EXPECT_TRUE(test::refuses<InputError>("part.bsdf: line 2", [&] { text.numbers(4, "a reading"); }));
     ScanText many("1 2 3\n", "t");
     EXPECT_THROW(many.numbers(2, "pairs"), InputError);
     ScanText few("1 2 3\n", "t");

@@ -1,7 +1,6 @@
 // A picture whose values show where they are, and its parts.
 #pragma once
 
-#include "base/input_file.h"
 #include "scratch_folder.h"
 #include "shade/parts/part.h"
 
@@ -57,7 +56,5 @@ inline std::filesystem::path writePartOf(const ScratchFolder& folder, const shad
         file, film.part(shade::piecesOf(kPartFrame, part.whole.shards).at(static_cast<std::size_t>(part.index))), part);
     return path;
 }
-
-inline std::string bytesOf(const std::filesystem::path& path) { return std::string(InputFile(path).bytes()); }
 
 }  // namespace stratum::test

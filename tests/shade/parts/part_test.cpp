@@ -1,6 +1,7 @@
 #include "shade/parts/part.h"
 
 #include "base/error.h"
+#include "refusal.h"
 #include "scratch_folder.h"
 #include "shade/parts/merge.h"
 #include "shade/parts/part_checks.h"
@@ -30,12 +31,7 @@ TEST(Part, IsThatOfItsSceneAndShardAlone) {
 }
 
 std::string refusalOf(const fs::path& path) {
-    try {
-        (void)shade::readPart(path);
-    } catch (const InputError& error) {
-        return error.what();
-    }
-    return "was read";
+    return test::messageOf<InputError>([&] { (void)shade::readPart(path); }, "was read");
 }
 
 TEST(Part, NumbersAreWhatTheirTypesHold) {

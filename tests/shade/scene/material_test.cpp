@@ -2,6 +2,7 @@
 #include "shade/finish/named_brdf.h"
 
 #include "base/error.h"
+#include "refusal.h"
 #include "shade/analytic_prints.h"
 #include "shade/brdf/lambert.h"
 #include "shade/integrator/render.h"
@@ -54,12 +55,8 @@ TEST(Material, KeysMayBeNames) {
     options.each = {{"infill", "lambert:0,0,1"}};
     EXPECT_NEAR(makeObjectMaterial(options, kBase, 0, features).of(glm::vec3(2, 0, 0)).albedo.b, 1, 1e-5f);
     options.each = {{"infil", "lambert:0,0,1"}};
-    try {
-        makeObjectMaterial(options, kBase, 0, features);
-        FAIL();
-    } catch (const UsageError& error) {
-        EXPECT_NE(std::string(error.what()).find("unknown, perimeter, infill"), std::string::npos) << error.what();
-    }
+    EXPECT_TRUE(test::refuses<UsageError>("unknown, perimeter, infill",
+                                          [&] { makeObjectMaterial(options, kBase, 0, features); }));
 }
 
 TEST(Material, PalettesTellToolsApartAndRampsGrowLighter) {

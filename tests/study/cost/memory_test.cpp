@@ -31,8 +31,7 @@ const std::string& cell(const std::vector<Row>& rows, std::size_t row, const std
 TEST(Memory, CountsWhatAGridHolds) {
     const test::ScratchFolder folder;
     const std::string print = (test::dataDir() / "gcode" / "tile.gcode").string();
-    StudyOptions common;
-    common.folder = folder.path();
+    StudyOptions common{.folder = folder.path()};
     common.command = {"vdbstudy"};
     double last = 0;
     common.progress = [&](double f) {
@@ -75,8 +74,7 @@ TEST(Memory, CountsWhatAGridHolds) {
 
 TEST(Memory, LeavesOutWhatDoesNotFit) {
     const test::ScratchFolder folder;
-    StudyOptions common;
-    common.folder = folder.path();
+    StudyOptions common{.folder = folder.path()};
     MemoryOptions options{{(test::dataDir() / "gcode" / "tile.gcode").string()}, {2}};
     options.memory_share = 1e-9;
     const StudyReport report = studyMemory(options, common);
@@ -87,8 +85,7 @@ TEST(Memory, LeavesOutWhatDoesNotFit) {
 TEST(Memory, PassesOnWhatIsWrongWithAPrint) {
     const test::ScratchFolder folder;
     std::ofstream(folder / "bad.gcode") << "hello\n";
-    StudyOptions common;
-    common.folder = folder.path();
+    StudyOptions common{.folder = folder.path()};
     EXPECT_THROW(studyMemory({{(folder / "bad.gcode").string()}, {1}}, common), InputError);
 }
 

@@ -15,9 +15,7 @@ namespace {
 
 TEST(Need, SwitchesEachCapabilityOnAlone) {
     const test::ScratchFolder folder;
-    StudyOptions common;
-    common.folder = folder.path();
-    common.quick = true;
+    StudyOptions common{.folder = folder.path(), .quick = true};
     const NeedOptions options{{(test::dataDir() / "gcode" / "tile.gcode").string()}, 1};
     // What was counted while all is off is told, and what grew found.
     std::ofstream(folder.path() / "need_off.csv")

@@ -94,9 +94,7 @@ TEST(SurfaceError, OfAPrintStaysBelowTheTwoBounds) {
 
 TEST(Geometry, WritesATable) {
     const test::ScratchFolder folder;
-    StudyOptions common;
-    common.folder = folder.path();
-    common.quick = true;
+    StudyOptions common{.folder = folder.path(), .quick = true};
     const GeometryOptions options{(test::dataDir() / "gcode" / "tile.gcode").string(), "1:4", {1, 2}, 500};
     const StudyReport report = studyGeometry(options, common);
     EXPECT_EQ(report.rows, 9U);  // two of each lattice, two half-widths, one of halves, two of settled beads

@@ -8,16 +8,13 @@
 
 #include <fstream>
 #include <map>
-#include <sstream>
 
 namespace stratum::study {
 namespace {
 
 TEST(Render, MeasuresErrorAgainstTime) {
     const test::ScratchFolder folder;
-    StudyOptions common;
-    common.folder = folder.path();
-    common.quick = true;
+    StudyOptions common{.folder = folder.path(), .quick = true};
     const RenderStudyOptions options{(test::dataDir() / "gcode" / "tile.gcode").string(), {2, 1}, 1};
     const StudyReport report = studyRender(options, common);
     std::ifstream file(report.csv);
@@ -41,11 +38,9 @@ TEST(Render, MeasuresErrorAgainstTime) {
     EXPECT_LT(errors["brick"][4].first, errors["samples apart"][4].first);
     // Against the finer voxels something remains that is no noise.
     EXPECT_GT(errors["brick"][4].second, errors["brick"][4].first);
-    std::ifstream html(report.html);
-    std::stringstream text;
-    text << html.rdbuf();
-    EXPECT_NE(text.str().find("data:image/jpeg;base64"), std::string::npos);
-    EXPECT_NE(text.str().find("<svg"), std::string::npos);
+    const std::string text = test::bytesOf(report.html);
+    EXPECT_NE(text.find("data:image/jpeg;base64"), std::string::npos);
+    EXPECT_NE(text.find("<svg"), std::string::npos);
 }
 
 }  // namespace

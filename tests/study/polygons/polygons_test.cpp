@@ -34,9 +34,7 @@ PeerTracers meshPeer() {
 
 TEST(Polygons, MeasuresAScene) {
     const test::ScratchFolder folder;
-    StudyOptions common;
-    common.folder = folder.path();
-    common.quick = true;
+    StudyOptions common{.folder = folder.path(), .quick = true};
     PolygonsOptions options;
     options.scenes = {(test::dataDir() / "scenes" / "roukema_2.json").string(),
                       (test::dataDir() / "scenes" / "roukema_3.json").string()};
@@ -61,9 +59,7 @@ TEST(Polygons, MeasuresAFolderOfPrints) {
     const test::ScratchFolder folder;
     const test::ScratchFolder prints;
     std::filesystem::copy(test::dataDir() / "gcode" / "tile.gcode", prints.path() / "tile.gcode");
-    StudyOptions common;
-    common.folder = folder.path();
-    common.quick = true;
+    StudyOptions common{.folder = folder.path(), .quick = true};
     PolygonsOptions options;
     options.prints = {prints.path().string()};
     common.threads = 2;
@@ -151,8 +147,7 @@ TEST(Polygons, SaysNothingOfWhatWasNotMeasured) {
 
 TEST(Polygons, SaysWhatItNeeds) {
     const test::ScratchFolder folder;
-    StudyOptions common;
-    common.folder = folder.path();
+    StudyOptions common{.folder = folder.path()};
     EXPECT_THROW(studyPolygons({}, {}, common), UsageError);
     PolygonsOptions empty;
     empty.prints = {folder.path().string()};

@@ -22,8 +22,7 @@ TEST(Page, HoldsAllThatItShowsAndNoFolders) {
     EXPECT_EQ(html.find("/home/"), std::string::npos);
     EXPECT_EQ(html.find("http://"), std::string::npos);
     const test::ScratchFolder folder;
-    StudyOptions common;
-    common.folder = folder.path();
+    StudyOptions common{.folder = folder.path()};
     StudyReport report;
     writePage(common, "p", page, report);
     EXPECT_EQ(report.html, folder / "p.html");

@@ -7,9 +7,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <fstream>
 #include <limits>
-#include <sstream>
 
 namespace stratum::study {
 namespace {
@@ -29,10 +27,8 @@ TEST(Table, IsAFileThatTheNextStudyMayReplace) {
     Table table("key,value");
     table.add({"a, b", "x \"y\""});
     table.write(folder / "t.csv");
-    std::ifstream file(folder / "t.csv");
-    std::stringstream text;
-    text << file.rdbuf();
-    EXPECT_EQ(text.str(), "key,value,made_by\n\"a, b\",\"x \"\"y\"\"\",vdbstudy " STRATUM_VERSION "\n");
+    EXPECT_EQ(test::bytesOf(folder / "t.csv"),
+              "key,value,made_by\n\"a, b\",\"x \"\"y\"\"\",vdbstudy " STRATUM_VERSION "\n");
     EXPECT_TRUE(isOwnFile(folder / "t.csv"));
     EXPECT_THROW(table.write(folder / "no" / "t.csv"), OutputError);
 }

@@ -14,8 +14,7 @@ namespace {
 GivenInput given() {
     GivenInput input;
     input.path = "my part.gcode";
-    input.objects.emplace_back();
-    input.objects.front().vdb = input.path;
+    input.objects.push_back({.vdb = input.path});
     input.words = {"--voxel-size=0.1"};
     return input;
 }

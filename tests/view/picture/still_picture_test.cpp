@@ -8,8 +8,6 @@
 
 #include <gtest/gtest.h>
 
-#include <fstream>
-#include <iterator>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -35,8 +33,8 @@ std::vector<std::uint8_t> fileOf(const GivenInput& given, const PicturePlan& pla
                                                     ready.objects, ready.scene, result, plan.denoise);
     metadata.insert(assemble::exposureFact(ready.tone));
     shade::PictureFile(path).write(result.film, metadata, ready.tone);
-    std::ifstream file(path, std::ios::binary);
-    return {std::istreambuf_iterator<char>(file), {}};
+    const std::string bytes = test::bytesOf(path);
+    return {bytes.begin(), bytes.end()};
 }
 
 void finish(StillPicture& picture) {

@@ -1,6 +1,7 @@
 #include "voxelize/beads/selection.h"
 
 #include "base/error.h"
+#include "refusal.h"
 #include "toolpaths.h"
 
 #include <gtest/gtest.h>
@@ -109,40 +110,19 @@ TEST(Selection, AnUnknownToolIsToldWhichThereAre) {
     Selection selection;
     chooseTool(3, toolpath, selection);
     EXPECT_EQ(selectBeads(toolpath, selection).size(), 6U);
-    try {
-        chooseTool(1, toolpath, selection);
-        ADD_FAILURE();
-    } catch (const UsageError& error) {
-        EXPECT_NE(std::string_view(error.what()).find("--tool 1: the print has no such tool; its tools are 0, 3"),
-                  std::string_view::npos)
-            << error.what();
-    }
-    try {
-        chooseTool(1, tenLayers(), selection);
-        ADD_FAILURE();
-    } catch (const UsageError& error) {
-        EXPECT_NE(std::string_view(error.what()).find("all of it is by tool 0"), std::string_view::npos)
-            << error.what();
-    }
+    EXPECT_TRUE(test::refuses<UsageError>("--tool 1: the print has no such tool; its tools are 0, 3",
+                                          [&] { chooseTool(1, toolpath, selection); }));
+    EXPECT_TRUE(test::refuses<UsageError>("all of it is by tool 0", [&] { chooseTool(1, tenLayers(), selection); }));
 }
 
 TEST(Selection, AnUnknownObjectGetsTheList) {
     Selection selection;
     for (const char* bad : {"ship", "3", "-1", "", "boat "}) {
-        try {
+        EXPECT_TRUE(test::refuses<UsageError>("\n  1: boat\n  2: 7", [&] {
             chooseObject(bad, twoObjects(), selection);
-            ADD_FAILURE() << bad;
-        } catch (const UsageError& error) {
-            EXPECT_NE(std::string_view(error.what()).find("\n  1: boat\n  2: 7"), std::string_view::npos)
-                << error.what();
-        }
+        })) << bad;
     }
-    try {
-        chooseObject("1", tenLayers(), selection);
-        ADD_FAILURE();
-    } catch (const UsageError& error) {
-        EXPECT_NE(std::string_view(error.what()).find("names no objects"), std::string_view::npos) << error.what();
-    }
+    EXPECT_TRUE(test::refuses<UsageError>("names no objects", [&] { chooseObject("1", tenLayers(), selection); }));
 }
 
 TEST(Selection, AnObjectWithoutBeadsLeavesNone) {
@@ -203,12 +183,7 @@ TEST(Snapshots, LabelsOfOneKindSortAsTheyPrint) {
 
 TEST(Selection, GuessesMistypedFeatures) {
     Selection selection;
-    try {
-        parseFeatures("-skirl", selection);
-        ADD_FAILURE();
-    } catch (const UsageError& error) {
-        EXPECT_NE(std::string_view(error.what()).find("did you mean 'skirt'?"), std::string_view::npos) << error.what();
-    }
+    EXPECT_TRUE(test::refuses<UsageError>("did you mean 'skirt'?", [&] { parseFeatures("-skirl", selection); }));
 }
 
 // Beads of half a minute each, and half a minute of travel before every layer: 15 minutes.

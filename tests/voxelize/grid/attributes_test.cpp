@@ -1,6 +1,7 @@
 #include "voxelize/grid/attributes.h"
 
 #include "base/error.h"
+#include "refusal.h"
 #include "toolpaths.h"
 #include "voxelize/grid/interior_distance.h"
 #include "voxelize/grid/voxel_choice.h"
@@ -114,12 +115,7 @@ TEST(Attributes, UnitsAreThoseOfTheirGrids) {
 }
 
 TEST(Attributes, UnknownNamesAreListed) {
-    try {
-        parseGrids("layer,colour");
-        FAIL();
-    } catch (const UsageError& error) {
-        EXPECT_NE(std::string(error.what()).find("color"), std::string::npos);
-    }
+    EXPECT_TRUE(test::refuses<UsageError>("color", [&] { parseGrids("layer,colour"); }));
     EXPECT_TRUE(parseGrids("surface").empty());
 }
 
