@@ -107,7 +107,7 @@ void Machine::assumeExtruderMode() {
         warn(
             "neither M82 nor M83 before the first extrusion, and E keeps falling back or stays the same, as only "
             "increments do; E is taken as relative (--e-mode absolute if not)");
-    } else if (!e_follows_axes_) {
+    } else if (!e_follows_axes_ && !settings_.volumetric_e.value_or(false)) {  // Cura writes no M82 for an Ultimaker 2
         warn("neither M82 nor M83 before the first extrusion; E is taken as absolute (--e-mode relative if not)");
     }
 }

@@ -314,8 +314,6 @@ private:
         if (flavor != "UltiGCode" && flavor != "Marlin(Volumetric)") return;
         settings.volumetric_e = true;
         settings.volumetric_reason = std::string("the file's FLAVOR is ").append(flavor);
-        // An Ultimaker 2 counts absolutely, and such files have no M82.
-        if (flavor == "UltiGCode" && !settings.relative_e) settings.relative_e = false;
     }
 };
 

@@ -46,6 +46,7 @@ TEST(Machine, AbsoluteByDefault) {
     EXPECT_EQ(toolpath.runs[0].speed, 50.0F);
     EXPECT_EQ(toolpath.firmware, "marlin");
     EXPECT_EQ(warningCount(toolpath, "neither M82 nor M83"), 1U);
+    EXPECT_EQ(warningCount(readProgram(";FLAVOR:UltiGCode\nG1 X9 Z.2 E1\nG1 X9 Y9 E2\n"), "neither M82"), 0U);
 }
 
 TEST(Machine, G0ExtrudesToo) { EXPECT_EQ(readProgram("M83\nG0 Z.2\nG0 X9 E1\n").beads.size(), 1U); }
