@@ -1,4 +1,4 @@
-"""What a page of vdbview takes in Chromium's own processes, and how it is turned and waited for."""
+"""What a page of vdbview takes in Chromium's own processes, memory and time, and how it is turned and waited for."""
 
 import os
 import re
@@ -54,6 +54,14 @@ def shares(page):
         if kind:
             found[kind.group(1)][process] = size
     return found
+
+
+def processor_seconds(page):
+    """Of the GPU's process until now."""
+    sizes = shares(page)["gpu-process"]
+    with open(f"/proc/{max(sizes, key=sizes.get)}/stat", encoding="utf-8") as file:
+        user, system = file.read().rsplit(")", 1)[1].split()[11:13]
+    return (int(user) + int(system)) / os.sysconf("SC_CLK_TCK")
 
 
 def memory_of(page, url, seconds):

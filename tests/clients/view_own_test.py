@@ -10,6 +10,7 @@ from run_tools import check, corpus, gcode, skip_without
 
 skip_without(("chromium", "chromedriver"), ("selenium",))
 
+from page_memory import processor_seconds
 from viewer_page import ViewerPage
 
 # Counts what web sockets carry.
@@ -212,6 +213,58 @@ def comes_into_sight():
             check(found["drawn"] < 0.6 * found["beads"], f"and not all of them: {found}")
 
 
+# Shows a view, or presses a key so often, once a frame; then, how long the page did not answer at most, ms: until two frames
+# later, or until the picture has all beads.
+NEAR_BY = """
+const [hash, presses, whole, done] = arguments;
+const frame = () => new Promise(requestAnimationFrame), picture = document.getElementById("picture");
+let [longest, last, over] = [0, performance.now(), false];
+const watch = async () => {
+  while (!over) {
+    await frame();
+    longest = Math.max(longest, -last + (last = performance.now()));
+  }
+};
+(async () => {
+  const watched = watch();
+  if (hash) location.hash = hash;
+  for (let n = 0; n < presses; ++n) {
+    picture.dispatchEvent(new KeyboardEvent("keydown", { key: "+", bubbles: true }));
+    await frame();
+  }
+  for (let n = 0; n < 3; ++n) await frame();
+  if (whole) await window.vdbviewDrawn();
+  over = true;
+  await watched;
+  done(longest);
+})();"""
+
+
+def near_by():
+    """Near by, and within an infill, where beads pass the eye, the page goes on to answer."""
+    page.set_window_size(1440, 900)
+    views = (("two_tone_mmu.gcode", [113, 100, 2], ((26, 0.5), (5, 0.5), (26, 0.03))), ("hull.gcode", [100, 98, 8], ((20, 0.1), (4, 0.1))))
+    for name, target, places in views:
+        with viewer.drawn(gcode(name), {"spp": 1}):
+            drag(False)  # its programs are made
+            drag(True)
+            steps = [(f"{mm} mm, up by {lift} of it", mm, lift, 0) for mm, lift in places] + [("+ pressed 60 times", 0, 0, 60)]
+            for what, mm, lift, presses in steps:
+                eye = [target[0] - 0.5 * mm, target[1] - 0.7 * mm, target[2] + lift * mm]
+                link = quote(json.dumps({"spp": 1, **({"camera": {"eye": eye, "look_at": target, "fov": 28}} if mm else {})}))
+                if presses:
+                    page.execute_async_script(NEAR_BY, link, 0, True)
+                found = []
+                for whole in (False, True):
+                    before = processor_seconds(page)
+                    longest = page.execute_async_script(NEAR_BY, None if whole or presses else link, 0 if whole else presses, whole)
+                    found.append((longest, processor_seconds(page) - before))
+                    print(f"{name}, {what}, {'all beads' if whole else 'the next frames'}: no answer for {longest:.0f} ms at most, {found[-1][1]:.1f} s of the GPU's process")
+                check(max(longest for longest, _ in found) < 15000, f"{name}, {what}: the page answers: {found}")
+                check(found[0][1] < (15 if presses else 6), f"{name}, {what}: its next frames take little: {found}")
+    page.set_window_size(500, 500)
+
+
 def quick_colors():
     """Quick pictures are as bright and as coloured as pictures at rest: decks, walls, sections, a part of the print."""
     for view, most in (({"printed": 47}, 14), ({"color_by": "speed"}, 18), ({"clip": [0, -1, 0, -98]}, 15), ({"layers": [40, 40]}, 11)):
@@ -388,6 +441,7 @@ def streams():
 try:
     carries_nothing()
     comes_into_sight()
+    near_by()
     quick_colors()
     circles()
     corners()

@@ -153,8 +153,8 @@ export class BeadRenderer {
     gl.activeTexture(gl.TEXTURE0 + 31);
   }
 
-  /** Starts a picture, or goes on with it: `parts` more of all beads. Returns whether all of them are in it. `seek`: with all
-   * beads that come into sight. */
+  /** Starts a picture, or goes on with it: `parts` more of the beads that were seen, and then of all; 0: of the former, all.
+   * Returns whether all are in it. `seek`: with all beads that come into sight. */
   collect(camera, state, parts, anew, seek = false) {
     const gl = this.gl;
     this.#use(this.beads, this.target, this.#view(camera, state));
@@ -164,14 +164,16 @@ export class BeadRenderer {
       this.visible.restart();
       gl.clearBufferuiv(gl.COLOR, 0, [0, 0, 0, 0]);
       gl.clearBufferfv(gl.DEPTH, 0, [0]);
-      this.#drawList(this.beads, this.visible.seenBeads);
+      this.#fillList(this.visible.seenBeads);
     }
+    if (!parts) this.#drawBeads(this.beads, true, 0, this.visible.count);
     if (seek) {
       const found = this.#seekAll();
       this.#use(this.beads, this.target, this.#view(camera, state));
-      this.#drawList(this.beads, found);
+      this.#fillList(found);
+      this.#drawBeads(this.beads, true, 0, found.length);
     }
-    for (let n = 0; n < parts && !this.visible.complete; ++n) this.#drawBeads(this.beads, false, ...this.visible.part());
+    for (let n = 0; n < parts && !this.visible.complete; ++n) this.#drawBeads(this.beads, ...this.visible.part());
     return this.visible.complete;
   }
 
@@ -207,7 +209,7 @@ export class BeadRenderer {
     this.unknown = known ? null : [camera, state];
     if (known) this.known = [camera, state];
     // The canvas may have depths of 24 bits.
-    const near = known ? NEAR : Math.max(NEAR, 0.9 * Math.min(...this.#corners().map((corner) => dot(sub(corner, camera.eye), camera.forward))));
+    const near = known ? NEAR : Math.max(0.05, 0.9 * Math.min(...this.#corners().map((corner) => dot(sub(corner, camera.eye), camera.forward))));
     const values = { ...this.#stage(camera, state), ribbons: RIBBONS, least: 0.6 * coarse.stride * this.table.layerHeight, near };
     const draw = (list, anew) => {
       const ribbons = coarse.ribbonsOf(list);
@@ -236,8 +238,7 @@ export class BeadRenderer {
     if (!rows) return;
     this.#use(this.maker, this.ribbonTarget, values, [ROW, rows]);
     gl.disable(gl.DEPTH_TEST);
-    gl.activeTexture(gl.TEXTURE0 + this.units.list);
-    fillTable(gl, this.textures.list, list, 1);
+    this.#fillList(list);
     gl.activeTexture(gl.TEXTURE0 + RIBBONS);
     gl.bindTexture(gl.TEXTURE_2D_ARRAY, this.ribbons);
     if (rows > this.ribbonRows) {
@@ -298,11 +299,9 @@ export class BeadRenderer {
     gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, this.corners);
   }
 
-  #drawList(program, list) {
-    const gl = this.gl;
-    gl.activeTexture(gl.TEXTURE0 + this.units.list);
-    fillTable(gl, this.textures.list, list, 1);
-    this.#drawBeads(program, true, 0, list.length);
+  #fillList(list) {
+    this.gl.activeTexture(this.gl.TEXTURE0 + this.units.list);
+    fillTable(this.gl, this.textures.list, list, 1);
   }
 
   #drawBeads(program, from_list, first, count) {

@@ -4,7 +4,7 @@
 // to the eye, so that floats are fine near the surface. Depth is along the viewing direction.
 import { ROW, ROW_BITS } from "./webgl.js";
 
-export const NEAR = 0.05; // mm, of depth 1
+export const NEAR = 1e-3; // mm, of depth 1
 /** Beads that are looked for at a time, at most. */
 export const SOUGHT = 32 * ROW;
 
@@ -320,7 +320,8 @@ bool isShown(uint n) { return shownAs(n) != 0u; }`;
 export const bead = (kinds) =>
   ["arcs", "tapers", "slopes", "corners", "extras"].filter((kind) => kinds[kind]).map((kind) => `#define ${kind.toUpperCase()}\n`).join("") + BEAD + CHOICE;
 
-/** Beads of the table, or of a list: each a rectangle on the picture about its box, as near as its nearest corner. */
+/** Beads of the table, or of a list: each a rectangle in the plane of the side of its box that faces the eye most, large enough
+ * to hide the box. It is there for what lies before the eye only, also of a bead that passes the eye, and is nowhere deeper than the bead. */
 export const beadVertices = (kinds) => `${HEAD}
 ${bead(kinds)}
 flat out uint id;
@@ -333,32 +334,25 @@ void main() {
   body = beadAt(n);
   vec3 low, high;
   boxOf(body, low, high);
-  // The box as a line along the bead, and what it reaches to the sides of that.
-  vec3 u = vec3(body.along, 0.0), v = vec3(-body.along.y, body.along.x, 0.0);
-  vec3 middle = 0.5 * (low + high), half_size = 0.5 * (high - low);
-  mat3 eyes = transpose(mat3(right, up, forward));
-  vec3 center = eyes * (body.start + u * middle.x + v * middle.y + vec3(0.0, 0.0, middle.z));
-  vec3 x = eyes * (u * half_size.x), y = eyes * (v * half_size.y), z = eyes * vec3(0.0, 0.0, half_size.z);
-  float deep = abs(y.z) + abs(z.z);
-  float nearest = center.z - abs(x.z) - deep;
-  if (center.z + abs(x.z) + deep <= 1e-3) return;
+  vec2 across = vec2(-body.along.y, body.along.x);
+  vec3 start = vec3(dot(body.start.xy, body.along), dot(body.start.xy, across), body.start.z);
+  low += start;
+  high += start;
+  // How far the sides are before the eye, and how that is to the sides behind: the box from there is so much smaller.
+  vec3 away = max(low, -high), shares = away / max(high, -low);
+  float share = max(max(shares.x, shares.y), shares.z);
+  bvec3 facing = equal(shares, vec3(share));
   vec2 at = vec2(gl_VertexID & 1, gl_VertexID >> 1 & 1) * 2.0 - 1.0;
-  if (nearest <= 1e-3) {
-    gl_Position = vec4(at, 1.0, 1.0);
+  vec3 corner = facing.x ? vec3(0.0, at) : facing.y ? vec3(at.x, 0.0, at.y) : vec3(at, 0.0);
+  facing = equal(corner, vec3(0.0));
+  if (dot(away, vec3(facing)) < 2.0 * ${NEAR} * length(vec3(slope, 1.0))) {
+    gl_Position = vec4(at, 1.0, 1.0); // the eye is in the box
     return;
   }
-  vec3 from = center - x, to = center + x;
-  from.xy /= from.z;
-  to.xy /= to.z;
-  vec2 e = to.xy - from.xy;
-  float l = length(e);
-  e = l > 1e-12 ? e / l : vec2(1.0, 0.0);
-  vec2 f = vec2(-e.y, e.x);
-  vec2 reach = vec2(abs(dot(y.xy, e)) + abs(dot(z.xy, e)), abs(dot(y.xy, f)) + abs(dot(z.xy, f)));
-  vec2 p = at.x < 0.0 ? from.xy : to.xy;
-  float away = max(max(abs(dot(from.xy, e)), abs(dot(to.xy, e))), abs(dot(p, f)));
-  p += (e * at.x * (reach.x + away * deep) + f * at.y * (reach.y + away * deep)) / nearest;
-  gl_Position = vec4(p / slope, min(1.0, 2.0 * ${NEAR} / nearest * 1.001 - 1.0), 1.0);
+  vec3 p = mix(mix(max(high, high * share), min(low, low * share), lessThan(corner, vec3(0.0))), mix(high, low, greaterThan(low, vec3(0.0))), facing);
+  p.xy = body.along * p.x + across * p.y;
+  float depth = dot(p, forward);
+  gl_Position = vec4(vec2(dot(p, right), dot(p, up)) / slope, 2.0 * ${NEAR} * 1.001 - depth, depth);
 }`;
 
 /** Of each bead, a point of a table: whether a point of its upper (or lower) or of its near side is not behind what the

@@ -205,12 +205,22 @@ export class OwnPicture extends EventTarget {
   /** The picture at rest, by parts of its beads: what waits would hold up the next picture that moves. */
   #complete(anew) {
     const renderer = this.#renderer;
+    const { visible } = renderer;
     const { camera, state, quick } = this.#resting;
     const began = performance.now();
-    let done = renderer.collect(camera, state, 1, anew);
-    for (renderer.finish(); !done && performance.now() - began < STEP; renderer.finish()) done = renderer.collect(camera, state, 1, false);
-    if (done || !quick) renderer.light(camera, state);
-    if (done || anew) renderer.note();
+    const waited = !anew && visible.begun;
+    renderer.finish(); // what waits is not of the first part
+    let [done, start, now] = [false, anew, performance.now()];
+    do {
+      const before = now;
+      done = renderer.collect(camera, state, 1, start);
+      start = false;
+      renderer.finish();
+      now = performance.now();
+      visible.took(now - before);
+    } while (!done && now - began < STEP);
+    if (done || (visible.begun && !quick)) renderer.light(camera, state);
+    if (done || (visible.begun && !waited)) renderer.note();
     this.#pace.rested(performance.now() - began, anew);
     this.#frame = done ? 0 : requestAnimationFrame(() => this.#complete(false));
     if (done) this.#tell("complete");

@@ -6,6 +6,8 @@ import { BEAD_BITS } from "./coarse_beads.js";
 import { COLORED, STAGE } from "./light_shaders.js";
 import { ROW } from "./webgl.js";
 
+const PASSED = 0.01; // mm before the eye
+
 export const ribbonFragments = (kinds) => `${HEAD}
 ${bead(kinds)}
 ${STAGE}
@@ -54,10 +56,11 @@ void cross_section(Bead b, uint n, vec3 p, vec3 path, vec3 beyond, float half_fl
     end = 0.0;
   }
   // Ends are round: a straight one of the same area is nearer.
-  p += along * end * 0.8 * reach(b, half_flat, along) - view * reach(b, half_flat, view);
+  p += along * end * 0.8 * reach(b, half_flat, along) - view * min(reach(b, half_flat, view), 0.9 * length(p));
   float depth = dot(p, forward);
   vec2 at = vec2(dot(p, right), dot(p, up)) / slope;
-  vec2 beside = vec2(dot(border, right), dot(border, up)) / slope - at * dot(border, forward) / max(depth, 1e-3);
+  // Far beside the picture, where a bead passes the eye, it would be as wide as that is away.
+  vec2 beside = vec2(dot(border, right), dot(border, up)) / slope - clamp(at / max(depth, 1e-3), -3.0, 3.0) * dot(border, forward);
   // Of what lies side by side one sees the flats, of what lies on others the round sides, too.
   vec3 facing = cross(side_way, along_path);
   facing *= sign(-dot(facing, view) + 1e-9);
@@ -143,16 +146,18 @@ void main() {
   }
 #endif
   vec3 before = begins ? wayBefore(n) : vec3(0.0), after = stops ? wayAfter(last) : vec3(0.0);
-  float past_from = dot(cut.xyz, from) - cut.w, past_to = dot(cut.xyz, to) - cut.w;
-  if (cut.xyz != vec3(0.0) && max(past_from, past_to) > 0.0) {
+  for (int k = 0; k < 2; ++k) { // what is behind the eye is cut away, too
+    vec4 plane = k == 0 ? cut : vec4(-forward, ${-PASSED});
+    float past_from = dot(plane.xyz, from) - plane.w, past_to = dot(plane.xyz, to) - plane.w;
+    if (plane.xyz == vec3(0.0) || max(past_from, past_to) <= 0.0) continue;
     if (min(past_from, past_to) > 0.0) return;
     vec3 border = mix(from, to, past_from / (past_from - past_to));
     if (past_from > 0.0) from = border;
     else to = border;
     if (past_from > 0.0) before = vec3(0.0);
     else after = vec3(0.0);
-    begins = begins || past_from > 0.0;
-    stops = stops || past_to > 0.0;
+    begins = past_from > 0.0 ? k == 0 : begins;
+    stops = past_to > 0.0 ? k == 0 : stops;
   }
   cross_section(b, n, from, from_path, before, b.flat0, begins ? -1.0 : 0.0, shown_as == 2u, from_place, from_side);
   cross_section(b, n, to, to_path, after, b.flat1, stops ? 1.0 : 0.0, shown_as == 2u, to_place, to_side);

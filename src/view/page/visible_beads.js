@@ -3,12 +3,15 @@
 // its surface. A quick one draws coarse beads instead, see coarse_beads.js. A view at rest adds all beads, in parts, until
 // none is missing.
 
-const PART = 4096; // beads
+const [LEAST, FIRST, MOST] = [16, 64, 4096]; // beads of a part
+const SHORT = 60; // ms of a part: near by, each bead may cover the picture
 // Looks after which a bead that is not seen is left out: one that was seen, and one that was expected.
 const FINE = { forget: 12, doubt: 2 };
 const COARSE = { forget: 4, doubt: 1 };
 
 export class VisibleBeads {
+  #part = FIRST;
+
   constructor(beads) {
     this.all = beads;
     this.seenAt = new Uint32Array(beads); // number of the look + 1; 0: not in the list
@@ -22,19 +25,31 @@ export class VisibleBeads {
   /** Another picture: nothing of it is drawn yet. */
   restart() {
     this.drawn = 0;
+    this.listed = this.count;
+    this.#part = FIRST;
   }
 
   get seenBeads() {
     return this.list.subarray(0, this.count);
   }
-  get complete() {
-    return this.drawn >= this.all;
+  /** Those that were seen before are in it. */
+  get begun() {
+    return this.drawn >= this.listed;
   }
-  /** The next part of all beads, [first, count]. */
+  get complete() {
+    return this.drawn >= this.listed + this.all;
+  }
+  /** The next part of those that were seen, and then of all: whether it is of the former, first, count. */
   part() {
-    const first = this.drawn;
-    this.drawn += PART;
-    return [first, Math.min(PART, this.all - first)];
+    const listed = !this.begun;
+    const first = listed ? this.drawn : this.drawn - this.listed;
+    const count = Math.min(this.#part, (listed ? this.listed : this.all) - first);
+    this.drawn += count;
+    return [listed, first, count];
+  }
+  /** The last part took so long, ms. */
+  took(time) {
+    this.#part = Math.max(LEAST, Math.min(MOST, 2 * this.#part, Math.ceil((this.#part * SHORT) / time)));
   }
 
   #sought = 0;
