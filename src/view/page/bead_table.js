@@ -58,6 +58,14 @@ export class BeadTable {
     return state.printed >= 100 ? this.count : moments[Math.max(1, Math.round(state.printed * 2)) - 1];
   }
 
+  /** Whether the state shows nothing. */
+  isEmpty(state) {
+    const shown = this.shown(state);
+    const end = this.end(state);
+    for (let bead = 0; bead < end; ++bead) if (shown[this.runOf(bead)]) return false;
+    return true;
+  }
+
   /** take(bead, run) of each bead that the state shows. */
   each(state, take) {
     const shown = this.shown(state);

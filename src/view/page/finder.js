@@ -6,6 +6,7 @@ const HINTS = { text: "M106", line: "1200", time: "1:25:00", layer: "12" };
 
 export class Finder {
   #line = 0; // that was found last
+  #what = ""; // was asked for last
 
   /** page: see main.js. */
   constructor(page) {
@@ -30,6 +31,12 @@ export class Finder {
     this.#line = 0;
     this.#say("");
   }
+  /** Whether an error of the server is an answer; it is told here then. */
+  takes(error) {
+    const answer = error.startsWith("the program has no line");
+    if (answer) this.#say(`The${error.slice(3)}.`);
+    return answer;
+  }
 
   #say(text) {
     byId("find-result").textContent = text;
@@ -38,6 +45,7 @@ export class Finder {
     const what = byId("find-what").value;
     const wanted = byId("find-for").value.trim();
     if (!wanted) return;
+    this.#what = what;
     if (what === "text") return this.page.connection.send({ type: "find", text: wanted, line: this.#line, back });
     const number = what === "time" ? secondsOf(wanted) : /^\d+$/.test(wanted) ? Number(wanted) : NaN;
     if (!(number >= 0 && number < 1e9) || (what === "line" && !number)) return this.#say(`That is no ${what}: write it as ${HINTS[what]}.`);
@@ -56,7 +64,8 @@ export class Finder {
   #take(found) {
     if (found.matches === 0) return this.#say("The program has no such text.");
     this.#line = found.line;
-    this.#say(`${found.matches ? `${found.match} of ${found.matches}: ` : ""}line ${found.line}, layer ${found.layer}`);
+    const over = this.#what === "time" && found.bead === this.page.motion.facts?.beads - 1;
+    this.#say(`${found.matches ? `${found.match} of ${found.matches}: ` : over ? "The print is over by then: " : ""}line ${found.line}, layer ${found.layer}`);
     this.page.controls.goTo(found.layer);
     this.page.motion.go(found.bead, linesOf(found.lines, found.line));
   }

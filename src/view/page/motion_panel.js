@@ -63,8 +63,22 @@ export class MotionPanel {
     this.page.connection.send({ type: "layers" });
   }
 
-  get #layer() {
+  /** How many beads are printed. */
+  get #end() {
+    const { table } = this.own;
+    return table?.complete ? table.end(this.page.state) : Infinity;
+  }
+  /** In which a part of the print ends; 0: all of it is there. */
+  get #working() {
+    const { table } = this.own;
+    return this.#end < table?.count ? table.layerOf(Math.max(0, this.#end - 1)) : 0;
+  }
+  get #last() {
     return this.page.state.layers[1] || this.facts?.layers || 0;
+  }
+  /** Of those that are shown. */
+  get #layer() {
+    return this.#working ? Math.max(this.page.state.layers[0] || 1, Math.min(this.#last, this.#working)) : this.#last;
   }
   /** Beads of the layer in front: its moves. */
   get #beads() {
@@ -76,7 +90,8 @@ export class MotionPanel {
   }
   /** The last move of the layer that is printed, from 1. */
   get move() {
-    return this.#beads.filter((bead) => bead < (this.page.state.beads ?? Infinity)).length;
+    const end = this.#end;
+    return this.#beads.filter((bead) => bead < end).length;
   }
   step(by) {
     byId("moves-group").open = true;
@@ -95,7 +110,8 @@ export class MotionPanel {
     const beads = this.#beads;
     if (!beads.length) return;
     move = Math.max(1, Math.min(beads.length, move));
-    this.page.select({ beads: move === beads.length ? null : beads[move - 1] + 1, printed: 100 }, moving);
+    const all = move === beads.length && this.#layer === this.#last;
+    this.page.select({ beads: all ? null : beads[move - 1] + 1, printed: 100 }, moving);
   }
 
   // The newest line that is wanted; one answer at a time.
@@ -120,10 +136,15 @@ export class MotionPanel {
       setText(label.querySelector("output"), counts && box.checked && n < KINDS.length ? String(counts[n]) : "");
     });
     byId("also-none").hidden = this.own.ready;
+    const { layers, printed } = this.page.state;
+    if (this.page.camera && (layers[0] || layers[1] || printed < 100)) this.#askLayers(); // behind the first picture
     const layer = this.#layer;
     const times = this.#layers?.seconds;
-    setText(byId("layer-info"), times && layer ? `Layer ${layer}: z ${this.#layers.z[layer].toFixed(2)} mm, takes ${clock(times[layer])}, done after ${clock(times.slice(0, layer + 1).reduce((a, b) => a + b, 0))}` : "");
+    const done = times?.slice(0, layer + 1).reduce((a, b) => a + b, 0);
+    setText(byId("layer-info"), times && layer ? `Layer ${layer}: z ${this.#layers.z[layer].toFixed(2)} mm, takes ${clock(times[layer])}, done after ${clock(done)}` : "");
     const count = this.#beads.length;
+    const now = printed < 100 && times && layer === this.#working ? `, ${clock(done - times[layer] * (1 - this.move / count))}` : "";
+    setText(byId("printed-value"), `${printed} %${now}`);
     byId("moves-group").hidden = !count;
     byId("moves").max = count;
     byId("moves").value = this.move;
