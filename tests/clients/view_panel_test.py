@@ -160,7 +160,7 @@ def scale():
         check(js("return document.querySelector('#legend .ends input').value") != "x", "nonsense is not taken")
         check(js("return document.querySelector('#legend .ends + output').textContent") == "“x” is no time: write it as 0:10:00.", "and told")
         js("const s = document.getElementById('color-by'); s.value = 'width'; s.dispatchEvent(new Event('change'))")
-        until("document.querySelector('#legend h2').textContent.startsWith('width')", "widths")
+        until("document.querySelector('#legend h2').textContent.startsWith('width') && !document.getElementById('command').textContent.includes('color-range')", "widths")
         for value, says in (("1e99", "“1e99” is no number up to 1e9."), ("9", "The lower end comes first.")):
             js("const i = document.querySelector('#legend .ends input'); i.value = arguments[0]; i.dispatchEvent(new Event('change'))", value)
             check(js("return document.querySelector('#legend .ends + output').textContent") == says, f"{value}: {says}")

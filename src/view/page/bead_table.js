@@ -60,10 +60,9 @@ export class BeadTable {
 
   /** Whether the state shows nothing. */
   isEmpty(state) {
-    const shown = this.shown(state);
-    const end = this.end(state);
-    for (let bead = 0; bead < end; ++bead) if (shown[this.runOf(bead)]) return false;
-    return true;
+    let empty = true;
+    this.each(state, () => (empty = false));
+    return empty;
   }
 
   /** take(bead, run) of each bead that the state shows. */

@@ -51,23 +51,19 @@ export class Controls {
   }
 
   /** What is selected of a print that was written anew: a number of beads is of the old one, and what it has no more hides nothing. */
-  #fitSelection(print) {
-    const { hidden_features: hidden, objects, tools } = this.page.state;
-    this.page.change({
-      beads: null,
-      hidden_features: print.features.some(({ name }) => !hidden.includes(name)) ? hidden : [],
-      objects: objects.filter((each) => print.objects.some(({ number }) => number === each)),
-      tools: tools.filter((each) => print.tools.includes(each)),
-    });
+  #fitSelection({ features, objects, tools }) {
+    const { state } = this.page;
+    const of = (chosen, all) => chosen.filter((each) => all.includes(each));
+    const hidden_features = features.every(({ name }) => state.hidden_features.includes(name)) ? [] : state.hidden_features;
+    this.page.change({ beads: null, hidden_features, objects: of(state.objects, objects.map((o) => o.number)), tools: of(state.tools, tools) });
   }
 
   /** Of an error of the server: why nothing is selected, in the words of the page; "": it is another error. */
   whyNothing(error) {
     if (error.includes("nothing of what is selected is printed")) return "what is selected is printed later";
     if (!error.startsWith("no bead is left")) return "";
-    const { hidden_features: hidden, layers } = this.page.state;
-    if (this.#facts?.print?.features.every(({ name }) => hidden.includes(name))) return "all features are hidden";
-    return `${layers.some(Boolean) ? "these layers have" : "the print has"} nothing of the features, objects and tools that are ticked`;
+    const any = byId("features").querySelector("input:checked");
+    return any ? "these layers have nothing of the features, objects and tools that are ticked" : "all features are hidden";
   }
 
   /** A list of boxes for pairs of value and text; of what is on and off, change() makes a part of the state. */

@@ -28,9 +28,8 @@ export class Legend {
   #setLegends(legends) {
     const old = this.#legends.flatMap((each) => each.entries);
     const gone = ({ title, entries }) => old.filter(({ name }) => title === "feature" && this.page.state.hidden_features.includes(name) && !entries.some((each) => each.name === name));
-    const order = [...this.#shares.keys()];
-    const inOrder = (entries) => entries.sort((a, b) => order.indexOf(a.name) - order.indexOf(b.name));
-    this.#legends = legends.map((each) => ({ ...each, entries: inOrder([...each.entries, ...gone(each)]) }));
+    const place = ({ name }) => [...this.#shares.keys()].indexOf(name);
+    this.#legends = legends.map((each) => ({ ...each, entries: [...each.entries, ...gone(each)].sort((a, b) => place(a) - place(b)) }));
     this.#place.hidden = legends.length === 0;
     const title = ({ title, unit }) => element("h2", {}, [title.replace("_", " "), UNITS[unit] ?? unit].filter(Boolean).join(", "));
     byId("legend-title").replaceChildren(...legends.slice(0, 1).map(title));

@@ -124,7 +124,7 @@ function drawOwn(moving) {
   if (moving || viewOf() !== onTop.view) hideServers();
   byId("loading").hidden = true;
   // The server is not asked while the view moves.
-  if (byId("trouble").dataset.of === "nothing" && !own.table.isEmpty(state)) good();
+  if (document.body.classList.contains("stale") && byId("trouble").dataset.of === "nothing" && !own.table.isEmpty(state)) good();
   answer.lines = null;
   answer.head = own.head(state);
   own.draw(camera, state, shownSize, moving);
@@ -229,9 +229,7 @@ function trouble(text, of = "") {
 /** The view that was asked for can be shown. */
 function good() {
   document.body.classList.remove("stale");
-  if (!["view", "nothing"].includes(byId("trouble").dataset.of)) return;
-  byId("trouble").dataset.of = "";
-  byId("trouble").hidden = true;
+  if (["view", "nothing"].includes(byId("trouble").dataset.of)) byId("trouble").hidden = true;
 }
 
 const on = (type, take) => connection.on(type, take);
@@ -341,7 +339,7 @@ on("failed", (detail) => {
   byId("command").textContent = "";
 });
 on("refused", ({ text }) => {
-  if (finder.takes(text)) return;
+  if (text.startsWith("the program has no line")) return finder.say(`The${text.slice(3)}.`);
   // A link of another version may ask for what this one does not know: the input itself is shown then.
   if (latest === 0 && toFragment(state, file) !== toFragment(initial(), file)) {
     setState(initial());

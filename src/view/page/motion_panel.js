@@ -63,22 +63,19 @@ export class MotionPanel {
     this.page.connection.send({ type: "layers" });
   }
 
-  /** How many beads are printed. */
-  get #end() {
+  /** How many beads are printed, and the layer of the last one; 0: all of them. */
+  get #printed() {
     const { table } = this.own;
-    return table?.complete ? table.end(this.page.state) : Infinity;
-  }
-  /** In which a part of the print ends; 0: all of it is there. */
-  get #working() {
-    const { table } = this.own;
-    return this.#end < table?.count ? table.layerOf(Math.max(0, this.#end - 1)) : 0;
+    const end = table?.complete ? table.end(this.page.state) : Infinity;
+    return { end, working: end < table?.count ? table.layerOf(Math.max(0, end - 1)) : 0 };
   }
   get #last() {
     return this.page.state.layers[1] || this.facts?.layers || 0;
   }
   /** Of those that are shown. */
   get #layer() {
-    return this.#working ? Math.max(this.page.state.layers[0] || 1, Math.min(this.#last, this.#working)) : this.#last;
+    const { working } = this.#printed;
+    return working ? Math.max(this.page.state.layers[0] || 1, Math.min(this.#last, working)) : this.#last;
   }
   /** Beads of the layer in front: its moves. */
   get #beads() {
@@ -90,7 +87,7 @@ export class MotionPanel {
   }
   /** The last move of the layer that is printed, from 1. */
   get move() {
-    const end = this.#end;
+    const { end } = this.#printed;
     return this.#beads.filter((bead) => bead < end).length;
   }
   step(by) {
@@ -143,7 +140,7 @@ export class MotionPanel {
     const done = times?.slice(0, layer + 1).reduce((a, b) => a + b, 0);
     setText(byId("layer-info"), times && layer ? `Layer ${layer}: z ${this.#layers.z[layer].toFixed(2)} mm, takes ${clock(times[layer])}, done after ${clock(done)}` : "");
     const count = this.#beads.length;
-    const now = printed < 100 && times && layer === this.#working ? `, ${clock(done - times[layer] * (1 - this.move / count))}` : "";
+    const now = printed < 100 && times && layer === this.#printed.working ? `, ${clock(done - times[layer] * (1 - this.move / count))}` : "";
     setText(byId("printed-value"), `${printed} %${now}`);
     byId("moves-group").hidden = !count;
     byId("moves").max = count;

@@ -60,7 +60,6 @@ export class SecondPrint {
       this.#own = new OwnPicture(byId("second-beads"));
       this.#own.addEventListener("changed", () => {
         if (!this.#own.ready) this.#asked = ""; // it has no light
-        this.#show();
         this.#compare();
         this.page.ask(false);
       });
@@ -69,27 +68,17 @@ export class SecondPrint {
     connection.on("hello", () => connection.send({ type: "open", file: Number(file) }));
     own.listen(connection);
     connection.on("no-beads", ({ text }) => this.#failed || this.#say(`It can't be shown here: ${text}.`));
-    connection.on("look", (look) => {
-      this.#failed = false;
-      own.illuminate(look);
-    });
-    connection.on("loading", ({ step }) => {
-      this.#failed = false;
-      if (!own.ready) this.#say(`${step} …`);
-    });
+    for (const type of ["look", "loading"]) connection.on(type, () => (this.#failed = false));
+    connection.on("look", (look) => own.illuminate(look));
+    connection.on("loading", ({ step }) => own.ready || this.#say(`${step} …`));
     connection.on("failed", ({ text }) => {
-      this.#failed = true;
+      byId("second-beads").hidden = this.#failed = true;
       this.#say(text);
-      this.#show();
     });
     connection.on("picture", () => connection.send({ type: "shown" }));
     this.page.ask(false);
   }
 
-  /** Nothing rather than what was shown before. */
-  #show() {
-    byId("second-beads").hidden = this.#failed || !this.#own.ready;
-  }
   #say(text) {
     byId("second-info").textContent = text;
   }
@@ -113,7 +102,8 @@ export class SecondPrint {
     // Numbers of beads, objects and tools are those of the first, and what is drawn besides beads.
     const its = { ...state, beads: null, objects: [], tools: [], also: [] };
     this.#askLook(its);
-    if (this.#failed || !this.#own.ready) return;
+    byId("second-beads").hidden = this.#failed || !this.#own.ready; // nothing rather than what was there before
+    if (byId("second-beads").hidden) return;
     this.#own.draw(camera, its, size, moving);
     if (!byId("differs").checked) this.#say("");
     else if (!moving && this.#masks) {

@@ -32,8 +32,7 @@ export const withOrWithout = (list, name, on) => list.filter((each) => each !== 
 /** For the server: without what is left open. */
 export function toMessage(state, size) {
   const message = { ...state, size };
-  delete message.also;
-  delete message.one_layer;
+  for (const key of ["also", "one_layer"]) delete message[key];
   for (const key of ["exposure", "bed", "clip", "beads", "color_range"]) if (message[key] === null) delete message[key];
   return message;
 }
