@@ -282,7 +282,7 @@ def unreadable():
 
 
 def facts():
-    """Heights with the digits that they have; what is cut can be read."""
+    """Heights with the digits that they have; what is cut can be read; boxes are of one size, also where a label wraps."""
     path = os.path.join(FOLDER, "a_long_name_of_a_file_that_is_longer_than_the_list_is_wide.gcode")
     with open(gcode("tile.gcode"), encoding="utf-8") as file, open(path, "w", encoding="utf-8") as out:
         out.write(file.read().replace("G1 Z4.8", "G1 Z4.85"))
@@ -291,6 +291,8 @@ def facts():
         check("4.85 mm high" in text, f"the height: {text}")
         check(js("return document.getElementById('facts').title") == text, "all of it in the title")
         check(js("return document.getElementById('file').title") == os.path.basename(path), "the file's name, too")
+        sizes = js("return [...new Set([...document.querySelectorAll('#features input')].map((e) => `${e.offsetWidth} ${e.offsetHeight}`))]")
+        check(len(sizes) == 1, f"all boxes are of one size: {sizes}")
         check(js("const f = document.getElementById('facts'); return f.scrollWidth <= f.clientWidth"), "nothing is cut at this width")
 
 

@@ -61,7 +61,9 @@ export class Controls {
   /** Of an error of the server: why nothing is selected, in the words of the page; "": it is another error. */
   whyNothing(error) {
     if (error.includes("nothing of what is selected is printed")) return "what is selected is printed later";
-    if (!error.startsWith("no bead is left")) return "";
+    const { hidden_features, layers, objects, tools } = this.page.state;
+    const here = layers.some(Boolean) || [...hidden_features, ...objects, ...tools].length > 0; // not on the command line
+    if (!here || !error.startsWith("no bead is left")) return "";
     const any = byId("features").querySelector("input:checked");
     return any ? "these layers have nothing of the features, objects and tools that are ticked" : "all features are hidden";
   }
