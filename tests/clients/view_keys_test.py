@@ -67,6 +67,22 @@ def keys_of_layers():
         at_layers(1, LAYERS - 1, "with those below it")
 
 
+def one_layer_alone():
+    """Is a part of the view: it is there after loading the page again, and ends where a range is typed."""
+    alone = "return document.getElementById('one-layer').checked"
+    with drawn(gcode("tile.gcode"), {"layers": [1, 5]}):
+        press("l")
+        check(settled().get("layers") == [5, 5], f"one alone: {settled()}")
+        page.refresh()
+        viewer.drawn_here()
+        check(js(alone), "it is alone still")
+        press("]")
+        at_layers(6, 6, "and the keys go on so")
+        js("const from = document.getElementById('layer-from'); from.value = '2'; from.dispatchEvent(new Event('change'))")
+        at_layers(2, 6, "a range is typed")
+        check(not js(alone), "which is not one alone")
+
+
 def search_by_keys():
     """/ goes to the search, and is not typed there; what is no layer is said."""
     result = "document.getElementById('find-result').textContent"
@@ -99,6 +115,83 @@ def play():
         js("const file = document.getElementById('file'); file.value = '1'; file.dispatchEvent(new Event('change'))")
         check(not js(f"return {playing}"), "another input is not played")
         until(f"{printed} === 100", "and is whole")
+
+
+def share():
+    """The panel follows the share that is printed: its layer, its move, and the time."""
+    program = Program(gcode("tile.gcode"))
+    length = lambda bead: sum((a - b) ** 2 for a, b in zip(bead[3], bead[4])) ** 0.5
+    rest = 0.07 * sum(map(length, program.beads))
+    layer = next(bead[1] for bead in program.beads if (rest := rest - length(bead)) < 0)
+    with drawn(gcode("tile.gcode"), {"printed": 7}):
+        told = until("document.getElementById('moves-value').textContent.match(/^move (\\d+) of (\\d+) in layer (\\d+)$/)", "a move")
+        move, count, at = map(int, told[1:])
+        check(abs(at - layer) <= 1 and 0 < move <= count, f"{told[0]}; 7 % of the length end in layer {layer}")
+        until(f"document.getElementById('layer-info').textContent.startsWith('Layer {at}:')", "its height and time")
+        printed = until("document.getElementById('printed-value').textContent.match(/^7 %, 0:00:(\\d+)$/)", "the time of it")
+        check(10 < int(printed[1]) < 60, f"it is {printed[0]}")
+        # From there, single moves are those of this layer.
+        beads = program.of_layer(at)
+        set_slider("moves", 3)
+        check(settled()["beads"] == beads[2] + 1, f"the third move of layer {at}: {settled()}")
+        set_slider("moves", len(beads))
+        check(settled().get("beads") == beads[-1] + 1, f"its last one is not that of the print: {settled()}")
+
+
+def nothing_left():
+    """An empty selection is told in the page's words; the page's own picture of the next view is no old one."""
+    trouble = "document.getElementById('trouble')"
+    told = f"!{trouble}.hidden && document.getElementById('trouble-text').textContent"
+    good = f"{trouble}.hidden && !document.body.classList.contains('stale')"
+    unfinished = "!window.vdbviewLog.some((e) => e.kind === 'final' && e.number === window.vdbviewAsked())"
+    # So many samples that the finished picture takes its time.
+    with drawn(gcode("tile.gcode"), {"spp": 512}):
+        js("for (const box of document.querySelectorAll('#features input')) box.click()")
+        check(until(told, "a word") == "Nothing is shown: all features are hidden.", js(f"return {told}"))
+        check(js("return document.getElementById('status').textContent") == "", "and nothing is on its way")
+        js("for (const box of document.querySelectorAll('#features input')) box.click()")
+        until(f"{good} && {unfinished}", "all of them again", 30)
+        set_slider("layer-high", 21)
+        set_slider("layer-low", 20)
+        set_slider("printed", 3)
+        check(until(told, "a word") == "Nothing is shown: what is selected is printed later.", js(f"return {told}"))
+        js("const s = document.getElementById('printed'); s.value = 95; s.dispatchEvent(new Event('input', { bubbles: true }))")
+        until(f"{good} && {unfinished}", "a slider that moves has it back", 30)
+        js("location.hash = '#' + encodeURIComponent(JSON.stringify({ spp: 512, color_by: 'layer', color_range: [0, 1e99] }))")
+        until(told, "a range that is refused")
+        js("location.hash = '#' + encodeURIComponent(JSON.stringify({ spp: 512, color_by: 'layer', color_range: [0, 9] }))")
+        until(f"{good} && {unfinished}", "the next one is not", 30)
+
+
+def last_tool():
+    """Of tools and objects the last one stays: none would mean all of them."""
+    with drawn(gcode("two_tone.gcode")):
+        ticked = js("""const boxes = [...document.querySelectorAll('#tools input')];
+                       for (const box of boxes) box.click();
+                       return boxes.map((box) => box.checked)""")
+        check(ticked == [False, True], f"T1 stays: {ticked}")
+        check(settled()["tools"] == [1], f"and is what is shown: {settled()}")
+
+
+def outlived():
+    """A file that is written anew is shown, also where what was selected of the old one leaves nothing of it."""
+    path = os.path.join(FOLDER, "outlived.gcode")
+    shutil.copy(gcode("two_tone.gcode"), path)
+    hidden = ["external-perimeter", "solid-infill", "top-infill", "skirt", "custom"]  # all that the vase has
+    with drawn(path, {"tools": [1], "hidden_features": hidden}):
+        set_slider("moves", 5)
+        check("beads" in settled(), f"a move is chosen: {settled()}")
+        shutil.copy(gcode("vase.gcode"), path + ".new")
+        os.replace(path + ".new", path)
+        until("document.getElementById('facts').textContent.includes('180 layers')", "the vase is read")
+        until("window.vdbviewLog.some((e) => e.kind === 'final' && e.number === window.vdbviewAsked())", "and shown")
+        state = settled()
+        check(not {"beads", "tools", "hidden_features"} & set(state), f"what it has not hides nothing: {state}")
+        check(not js("return document.getElementById('trouble').checkVisibility()"), "and nothing is wrong")
+    # A link's number of beads is of the file that it is opened with.
+    with drawn(gcode("tile.gcode"), {"beads": 300}):
+        until("window.vdbviewLog.some((e) => e.kind === 'final')", "a link")
+        check(settled()["beads"] == 300, f"keeps its move: {settled()}")
 
 
 def another_input():
@@ -240,10 +333,18 @@ def nozzle():
         check(js(drawn_marks), "the nozzle is there")
         press("\ue00c")  # Escape
         check(js(drawn_marks), "and stays")
+        press("m")
+        press("\ue00c")
+        check(js("return document.getElementById('measure').getAttribute('aria-pressed')") == "false", "measuring ends by it")
 
 
 try:
     keys_of_layers()
+    one_layer_alone()
+    share()
+    nothing_left()
+    last_tool()
+    outlived()
     search_by_keys()
     play()
     another_input()

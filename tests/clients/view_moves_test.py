@@ -113,6 +113,17 @@ def layers():
         check(abs(total - 60 * minutes - seconds) < 0.2 * total, f"{total} s of all layers; the slicer says {stated}")
         facts = js("return document.getElementById('facts').textContent")
         check(f"0:{minutes:02}:{seconds:02}" in facts and " g " in facts, f"the head: {facts}")
+    # Without a hand on the slider, too: by a link, and by keys.
+    with drawn(gcode("tile.gcode")):
+        height = js("return document.getElementById('layers-group').offsetHeight")
+        js("location.hash = '#' + encodeURIComponent(JSON.stringify({ layers: [1, 5] }))")
+        until("document.getElementById('layer-info').textContent.startsWith('Layer 5: z 1.00 mm, takes')", "the layer of a link")
+        check(js("return document.getElementById('layers-group').offsetHeight") == height, "the panel does not jump")
+        page.refresh()
+        viewer.drawn_here()
+        until("document.getElementById('layer-info').textContent.startsWith('Layer 5:')", "and when it is loaded again")
+        js("document.getElementById('picture').dispatchEvent(new KeyboardEvent('keydown', { key: '[' }))")
+        until("document.getElementById('layer-info').textContent.startsWith('Layer 4:')", "a key goes to the next one")
 
 
 def places():
@@ -195,6 +206,16 @@ def phone():
     page.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", {"width": 390, "height": 844, "deviceScaleFactor": 2, "mobile": True})
     with drawn(gcode("tile.gcode"), {"color_by": "feature"}):
         until("document.querySelectorAll('#legend li').length", "the legend")
+        check(not js("return document.getElementById('legend').open"), "which is closed at first")
+        js("""const c = document.getElementById('picture'), b = c.getBoundingClientRect();
+              c.setPointerCapture = () => {};
+              for (const type of ['pointerdown', 'pointerup']) c.dispatchEvent(new PointerEvent(type, { pointerId: 1,
+                clientX: b.left + b.width * 0.5, clientY: b.top + b.height * 0.55, button: 0, bubbles: true }));""")
+        until("document.querySelector('#answer ol')", "a click")
+        lower, upper = js("""const box = (e) => document.querySelector(e).getBoundingClientRect();
+                             return [box('#answer').bottom, box('.status').top]""")
+        check(lower <= upper, f"the status line is below the answer: {lower}, {upper}")
+        js("document.querySelector('#answer button').click()")
         js("document.getElementById('panels').click(); for (const d of document.querySelectorAll('details')) d.open = true;")
         small = js("""const targets = [...document.querySelectorAll('button, select, summary, input:not([type=checkbox]), label:has(input[type=checkbox]), [role=checkbox]')];
             return targets.filter((e) => e.checkVisibility()).map((e) => [e, e.getBoundingClientRect()])

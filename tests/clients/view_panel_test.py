@@ -76,7 +76,10 @@ def search():
             find(what, wrong)
             told(says)
         find("line", 10**8)
-        until("document.getElementById('trouble-text').textContent.includes('has no line')", "a line that is not there")
+        until("document.getElementById('find-result').textContent.includes('has no line')", "a line that is not there")
+        check(js("return document.getElementById('trouble').hidden"), "which is no alarm")
+        find("time", "9:00:00")
+        told(f"The print is over by then: line {program.beads[-1][0]},")
         js("document.getElementById('picture').dispatchEvent(new KeyboardEvent('keydown', { key: '/' }))")
         check(js("return document.activeElement.id") == "find-for", "a key goes to the search")
 
@@ -147,6 +150,39 @@ def scale():
         until("/--color-range=[0-9.]+,600/.test(document.getElementById('command').textContent)", "are typed as a clock has them")
         js("const i = document.querySelector('#legend .ends input'); i.value = 'x'; i.dispatchEvent(new Event('change'))")
         check(js("return document.querySelector('#legend .ends input').value") != "x", "nonsense is not taken")
+        check(js("return document.querySelector('#legend .ends + output').textContent") == "“x” is no time: write it as 0:10:00.", "and told")
+        js("const s = document.getElementById('color-by'); s.value = 'width'; s.dispatchEvent(new Event('change'))")
+        until("document.querySelector('#legend h2').textContent.startsWith('width') && !document.getElementById('command').textContent.includes('color-range')", "widths")
+        for value, says in (("1e99", "“1e99” is no number up to 1e9."), ("9", "The lower end comes first.")):
+            js("const i = document.querySelector('#legend .ends input'); i.value = arguments[0]; i.dispatchEvent(new Event('change'))", value)
+            check(js("return document.querySelector('#legend .ends + output').textContent") == says, f"{value}: {says}")
+        check("color-range" not in js("return document.getElementById('command').textContent"), "neither is asked for")
+        js("const i = document.querySelector('#legend .ends input'); i.value = '0,125'; i.dispatchEvent(new Event('change'))")
+        until("document.getElementById('command').textContent.includes('--color-range=0.125,')", "a decimal comma is taken")
+        check(js("return document.getElementById('trouble').hidden"), "without an alarm")
+
+
+def words():
+    """The legend has the words and the order of the panel; a feature that is hidden stays in its place."""
+    names = lambda: js("return [...document.querySelectorAll('#legend li')].map((e) => e.textContent.replace(/[0-9.]+ %$/, ''))")
+    with drawn(gcode("two_tone.gcode"), {"color_by": "feature"}):
+        until("document.querySelectorAll('#legend li').length", "the legend")
+        panel = js("return [...document.querySelectorAll('#features label')].map((e) => e.textContent)")
+        before = names()
+        check(len(before) > 4 and before == [name for name in panel if name in before], f"{before} as {panel}")
+        for shown in (False, True):
+            asked = js("document.querySelectorAll('#legend input')[1].click(); return window.vdbviewAsked()")
+            until(f"window.vdbviewLog.some((e) => e.kind === 'final' && e.number > {asked})", "the second one is clicked")
+            check(names() == before, f"the order is kept: {names()}")
+            check(js("return document.querySelectorAll('#legend input')[1].checked") == shown, f"it is shown: {shown}")
+        js("document.getElementById('legend-title').click()")
+        check(not js("return document.querySelector('#legend ul').checkVisibility()"), "it can be closed")
+        js("const s = document.getElementById('color-by'); s.value = 'tool'; s.dispatchEvent(new Event('change'))")
+        until("document.querySelector('#legend h2').textContent === 'tool'", "tools")
+        check(names() == ["T0", "T1"] == js("return [...document.querySelectorAll('#tools label')].map((e) => e.textContent)"), f"{names()}")
+        js("const s = document.getElementById('color-by'); s.value = 'object'; s.dispatchEvent(new Event('change'))")
+        until("document.querySelector('#legend h2').textContent === 'object'", "objects")
+        check(names() == ["no object"], f"{names()}")
 
 
 def excluded():
@@ -214,6 +250,44 @@ def two_prints():
         check(js("return document.getElementById('second-info').textContent") == "", "without numbers")
 
 
+def unreadable():
+    """Beside the first print, a file that can't be read is nothing but its error, until it is whole."""
+    path = os.path.join(FOLDER, "bad.gcode")
+    shutil.copy(gcode("tile.gcode"), path)
+    empty = "!document.getElementById('second-beads').checkVisibility()"
+    wrong = "document.getElementById('second-info').textContent.includes('no G-code command')"
+    with drawn(gcode("tile.gcode"), None, path, gcode("two_tone.gcode")):
+        js("const s = document.getElementById('second'); s.value = '2'; s.dispatchEvent(new Event('change'))")
+        until(f"!({empty}) && document.getElementById('second-info').textContent === ''", "a second print")
+        with open(path, "w", encoding="utf-8") as file:
+            file.write("this is no G-code\n" * 10)
+        js("const s = document.getElementById('second'); s.value = '1'; s.dispatchEvent(new Event('change'))")
+        until(f"{wrong} && {empty}", "another one that can't be read")
+        set_slider("layer-high", 5)
+        until("window.vdbviewLog.some((e) => e.kind === 'final' && e.number === window.vdbviewAsked())", "the first one goes on")
+        check(js(f"return {wrong} && {empty}"), f"the second says why it is empty: {js('return document.getElementById(`second-info`).textContent')}")
+        shutil.copy(gcode("tile.gcode"), path)
+        until(f"!({empty}) && document.getElementById('second-info').textContent === ''", "it is whole again")
+        with open(path, "w", encoding="utf-8") as file:
+            file.write("this is no G-code\n" * 10)
+        until(f"{wrong} && {empty}", "and broken again")
+
+
+def facts():
+    """Heights with the digits that they have; what is cut can be read; boxes are of one size, also where a label wraps."""
+    path = os.path.join(FOLDER, "a_long_name_of_a_file_that_is_longer_than_the_list_is_wide.gcode")
+    with open(gcode("tile.gcode"), encoding="utf-8") as file, open(path, "w", encoding="utf-8") as out:
+        out.write(file.read().replace("G1 Z4.8", "G1 Z4.85"))
+    with drawn(path):
+        text = js("return document.getElementById('facts').textContent")
+        check("4.85 mm high" in text, f"the height: {text}")
+        check(js("return document.getElementById('facts').title") == text, "all of it in the title")
+        check(js("return document.getElementById('file').title") == os.path.basename(path), "the file's name, too")
+        sizes = js("return [...new Set([...document.querySelectorAll('#features input')].map((e) => `${e.offsetWidth} ${e.offsetHeight}`))]")
+        check(len(sizes) == 1, f"all boxes are of one size: {sizes}")
+        check(js("const f = document.getElementById('facts'); return f.scrollWidth <= f.clientWidth"), "nothing is cut at this width")
+
+
 def section():
     """The controls show the section of a link."""
     with viewer.drawn(gcode("tile.gcode"), {"clip": [0, -1, 0, -95]}):
@@ -230,7 +304,10 @@ try:
     search()
     head()
     scale()
+    words()
+    facts()
     excluded()
     two_prints()
+    unreadable()
 finally:
     viewer.close()

@@ -164,7 +164,8 @@ std::vector<std::uint8_t> bytesOf(const std::vector<Value>& values) {
 
 std::string whyNoBeads(const Document& document) {
     const GivenInput& given = document.given();
-    if (given.objects.size() != 1 || !document.toolpath(0)) return "the input is not a print alone";
+    if (given.objects.size() != 1) return "the input is not a print alone";
+    if (!document.toolpath(0)) return "the input is no print, or was not read";
     if (!given.objects.front().placement.isIdentity()) return "the print is moved by its scene";
     const assemble::PrintRequest& request = given.options.tracing.prints;
     if (!request.print.layers.empty() || !request.print.features.empty() || !request.print.objects.empty() ||

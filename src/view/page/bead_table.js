@@ -58,6 +58,13 @@ export class BeadTable {
     return state.printed >= 100 ? this.count : moments[Math.max(1, Math.round(state.printed * 2)) - 1];
   }
 
+  /** Whether the state shows nothing. */
+  isEmpty(state) {
+    let empty = true;
+    this.each(state, () => (empty = false));
+    return empty;
+  }
+
   /** take(bead, run) of each bead that the state shows. */
   each(state, take) {
     const shown = this.shown(state);

@@ -26,24 +26,46 @@ export class Controls {
 
   /** What the input has. */
   #setFacts(facts) {
-    this.#facts = facts;
     const { print } = facts;
     for (const group of document.querySelectorAll(".of-prints")) group.hidden = !print;
     setOptions(byId("material"), [["as the file says", ""], ["a colour", "#"], ...facts.materials.map((name) => [name, name])]);
+    const anew = this.#facts?.print && this.#facts.generation !== facts.generation;
+    this.#facts = facts;
     if (print) {
+      if (anew) this.#fitSelection(print);
       for (const id of ["layer-low", "layer-high", "layer-from", "layer-to"]) byId(id).max = print.layers;
       // The file may have been written anew, with fewer.
       const [low, high] = this.page.state.layers;
       if (Math.max(low, high) > print.layers) this.page.change({ layers: low > print.layers ? [0, 0] : [low, 0] });
+      // No number means all of them: the last one stays.
+      const some = (key) => (on, off) => (on.length ? { [key]: off.length ? on : [] } : {});
       this.#checks("features", print.features.map((f) => [f.name, f.name.replaceAll("-", " ")]), (on, off) => ({ hidden_features: off }));
-      this.#checks("objects", print.objects.map((o) => [o.number, o.name]), (on, off) => ({ objects: off.length ? on : [] }));
-      this.#checks("tools", print.tools.map((t) => [t, `T${t}`]), (on, off) => ({ tools: off.length ? on : [] }));
+      this.#checks("objects", print.objects.map((o) => [o.number, o.name]), some("objects"));
+      this.#checks("tools", print.tools.map((t) => [t, `T${t}`]), some("tools"));
       byId("objects-group").hidden = print.objects.length < 2;
       byId("tools-group").hidden = print.tools.length < 2;
     }
     const attributes = facts.attributes.map((name) => [name === "color" ? "the file's colours" : name.replace("_", " "), name]);
     setOptions(byId("color-by"), [["the material", ""], ...attributes]);
     this.show();
+  }
+
+  /** What is selected of a print that was written anew: a number of beads is of the old one, and what it has no more hides nothing. */
+  #fitSelection({ features, objects, tools }) {
+    const { state } = this.page;
+    const of = (chosen, all) => chosen.filter((each) => all.includes(each));
+    const hidden_features = features.every(({ name }) => state.hidden_features.includes(name)) ? [] : state.hidden_features;
+    this.page.change({ beads: null, hidden_features, objects: of(state.objects, objects.map((o) => o.number)), tools: of(state.tools, tools) });
+  }
+
+  /** Of an error of the server: why nothing is selected, in the words of the page; "": it is another error. */
+  whyNothing(error) {
+    if (error.includes("nothing of what is selected is printed")) return "what is selected is printed later";
+    const { hidden_features, layers, objects, tools } = this.page.state;
+    const here = layers.some(Boolean) || [...hidden_features, ...objects, ...tools].length > 0; // not on the command line
+    if (!here || !error.startsWith("no bead is left")) return "";
+    const any = byId("features").querySelector("input:checked");
+    return any ? "these layers have nothing of the features, objects and tools that are ticked" : "all features are hidden";
   }
 
   /** A list of boxes for pairs of value and text; of what is on and off, change() makes a part of the state. */
@@ -61,7 +83,6 @@ export class Controls {
     const part = (layer) => (count > 1 ? ((layer - 1) / (count - 1)) * 100 : 0);
     byId("layer-between").style.left = `${part(low)}%`;
     byId("layer-between").style.right = `${100 - part(high)}%`;
-    byId("printed-value").textContent = `${state.printed} %`;
     for (const box of byId("features").querySelectorAll("input")) box.checked = !state.hidden_features.includes(box.value);
     for (const id of ["objects", "tools"])
       for (const box of byId(id).querySelectorAll("input")) box.checked = !state[id].length || state[id].includes(Number(box.value));
@@ -72,7 +93,7 @@ export class Controls {
     byId("exposure").disabled = state.exposure === null;
     const values = {
       "layer-low": low, "layer-from": low, "layer-high": high, "layer-to": high,
-      printed: state.printed, "by-time": state.by_time ? "1" : "",
+      "one-layer": state.one_layer && low === high, printed: state.printed, "by-time": state.by_time ? "1" : "",
       "color-by": state.color_by, material: own ? "#" : state.material, ...(own && { color: state.material }),
       integrator: state.integrator, smooth: state.smooth, spp: state.spp,
       light: turn ? "sky:" : state.light, ...(turn && { "sun-height": height, "sun-turn": turn }), "light-turn": state.light_rotation,
@@ -85,12 +106,13 @@ export class Controls {
 
   /** Layers low to high of all, NaN: from the first, to the last; the ends that are those of the print are left open. */
   setLayers(low, high, moving) {
+    const { checked } = byId("one-layer");
     const count = this.layerCount;
     if (!count) return;
     const within = (layer, least, open) => Math.max(least, Math.min(count, Number.isNaN(layer) ? open : Math.round(layer)));
     low = within(low, 1, 1);
     high = within(high, low, count);
-    this.page.select({ beads: null, layers: [low === 1 && high === count ? 0 : low, high === count ? 0 : high] }, moving);
+    this.page.select({ beads: null, one_layer: checked && low === high, layers: [low === 1 && high === count ? 0 : low, high === count ? 0 : high] }, moving);
   }
 
   /** Makes a layer the last one, or that which is shown alone. */
@@ -99,10 +121,10 @@ export class Controls {
     this.setLayers(low, layer);
   }
 
-  /** Another input: what was chosen of the last one is not of this one. */
+  /** Another input. */
   reset() {
     this.stop();
-    byId("one-layer").checked = false;
+    this.#facts = null;
   }
 
   #takeSelection() {

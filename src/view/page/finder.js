@@ -16,7 +16,7 @@ export class Finder {
     byId("find-what").addEventListener("change", () => {
       byId("find-for").placeholder = HINTS[byId("find-what").value];
       byId("find-back").disabled = byId("find-what").value !== "text";
-      this.#say("");
+      this.say("");
     });
   }
 
@@ -28,10 +28,11 @@ export class Finder {
   /** Another program. */
   reset() {
     this.#line = 0;
-    this.#say("");
+    this.say("");
   }
 
-  #say(text) {
+  /** Below the field. */
+  say(text) {
     byId("find-result").textContent = text;
   }
   #ask(back) {
@@ -40,23 +41,24 @@ export class Finder {
     if (!wanted) return;
     if (what === "text") return this.page.connection.send({ type: "find", text: wanted, line: this.#line, back });
     const number = what === "time" ? secondsOf(wanted) : /^\d+$/.test(wanted) ? Number(wanted) : NaN;
-    if (!(number >= 0 && number < 1e9) || (what === "line" && !number)) return this.#say(`That is no ${what}: write it as ${HINTS[what]}.`);
+    if (!(number >= 0 && number < 1e9) || (what === "line" && !number)) return this.say(`That is no ${what}: write it as ${HINTS[what]}.`);
     if (what === "layer") return this.#askLayer(number);
     this.page.connection.send({ type: "find", [what === "time" ? "seconds" : "line"]: number });
   }
 
   #askLayer(number) {
     const count = this.page.controls.layerCount;
-    if (number < 1 || number > count) return this.#say(`The print has layers 1 to ${count}.`);
+    if (number < 1 || number > count) return this.say(`The print has layers 1 to ${count}.`);
     this.page.controls.goTo(number);
-    this.#say(`layer ${number}`);
+    this.say(`layer ${number}`);
   }
 
   /** What the server has found. */
   #take(found) {
-    if (found.matches === 0) return this.#say("The program has no such text.");
+    if (found.matches === 0) return this.say("The program has no such text.");
     this.#line = found.line;
-    this.#say(`${found.matches ? `${found.match} of ${found.matches}: ` : ""}line ${found.line}, layer ${found.layer}`);
+    const over = byId("find-what").value === "time" && found.bead === this.page.motion.facts?.beads - 1;
+    this.say(`${found.matches ? `${found.match} of ${found.matches}: ` : over ? "The print is over by then: " : ""}line ${found.line}, layer ${found.layer}`);
     this.page.controls.goTo(found.layer);
     this.page.motion.go(found.bead, linesOf(found.lines, found.line));
   }

@@ -10,7 +10,7 @@ const number = (value, unit) => (unit === "s" ? clock(value) : Number(value.toPr
 export class Legend {
   #place = byId("legend");
   #legends = [];
-  #shares = new Map(); // of the filament, by feature
+  #shares = new Map(); // of the filament, by feature in their order
   #by_time = false; // the histogram
 
   /** page: see main.js. */
@@ -28,12 +28,12 @@ export class Legend {
   #setLegends(legends) {
     const old = this.#legends.flatMap((each) => each.entries);
     const gone = ({ title, entries }) => old.filter(({ name }) => title === "feature" && this.page.state.hidden_features.includes(name) && !entries.some((each) => each.name === name));
-    this.#legends = legends.map((each) => ({ ...each, entries: [...each.entries, ...gone(each)] }));
+    const place = ({ name }) => [...this.#shares.keys()].indexOf(name);
+    this.#legends = legends.map((each) => ({ ...each, entries: [...each.entries, ...gone(each)].sort((a, b) => place(a) - place(b)) }));
     this.#place.hidden = legends.length === 0;
-    renew(this.#place, ...this.#legends.flatMap((each) => [
-      element("h2", {}, [each.title.replace("_", " "), UNITS[each.unit] ?? each.unit].filter(Boolean).join(", ")),
-      ...(each.ramp.length ? this.#scale(each) : [this.#list(each)]),
-    ]));
+    const title = ({ title, unit }) => element("h2", {}, [title.replace("_", " "), UNITS[unit] ?? unit].filter(Boolean).join(", "));
+    byId("legend-title").replaceChildren(...legends.slice(0, 1).map(title));
+    renew(byId("legend-of"), ...this.#legends.flatMap((each, n) => [...(n ? [title(each)] : []), ...(each.ramp.length ? this.#scale(each) : [this.#list(each)])]));
     this.weigh();
   }
 
@@ -43,14 +43,17 @@ export class Legend {
     const inputs = [least, most].map((value, n) => {
       const input = element("input", { value: number(value, unit), ariaLabel: n ? "Most" : "Least" });
       input.addEventListener("change", () => {
-        const typed = inputs.map((each) => (unit === "s" ? secondsOf(each.value.trim()) : Number(each.value || NaN)));
-        // What was not typed keeps its digits.
-        const range = typed.map((each, k) => (inputs[k] === input ? each : [least, most][k]));
-        if (range[0] < range[1]) this.page.change({ color_range: range });
-        else input.value = number(value, unit);
+        const text = input.value.trim();
+        const typed = unit === "s" ? secondsOf(text) : Number(text.replace(",", ".") || NaN);
+        const range = n ? [least, typed] : [typed, most]; // what was not typed keeps its digits
+        const wrong = !(Math.abs(typed) <= 1e9) ? `“${text}” is no ${unit === "s" ? "time: write it as 0:10:00" : "number up to 1e9"}.` : range[0] < range[1] ? "" : "The lower end comes first.";
+        told.textContent = wrong;
+        if (wrong) input.value = number(value, unit);
+        else this.page.change({ color_range: range });
       });
       return input;
     });
+    const told = element("output", { className: "info" });
     const all = element("button", { type: "button", title: "From the least value to the most", hidden: !this.page.state.color_range }, "All");
     all.addEventListener("click", () => this.page.change({ color_range: null }));
     const ends = element("div", { className: "ends" }, inputs[0], all, inputs[1]);
@@ -61,7 +64,7 @@ export class Legend {
       this.#by_time = value !== "";
       this.weigh();
     });
-    return [element("div", { className: "bars" }), bar, ends, by];
+    return [element("div", { className: "bars" }), bar, ends, told, by];
   }
 
   /** The histogram of what is shown now. */
@@ -83,10 +86,11 @@ export class Legend {
 
   #list({ title, entries }) {
     return element("ul", {}, ...entries.map(({ name, color }) => {
-      if (title !== "feature" || !this.#shares.has(name)) return element("li", {}, swatch(color), name);
+      const called = { feature: name.replaceAll("-", " "), tool: name.replace("tool ", "T"), object: name.replace(/^object 0$/, "no object") }[title] ?? name; // in the panel
+      if (title !== "feature" || !this.#shares.has(name)) return element("li", {}, swatch(color), called);
       const { hidden_features: hidden } = this.page.state;
       const changed = (on) => this.page.select({ hidden_features: withOrWithout(hidden, name, !on) });
-      const label = checkbox(name, changed, swatch(color), name, element("output", {}, `${(100 * this.#shares.get(name)).toFixed(1)} %`));
+      const label = checkbox(name, changed, swatch(color), called, element("output", {}, `${(100 * this.#shares.get(name)).toFixed(1)} %`));
       label.control.checked = !hidden.includes(name);
       return element("li", {}, label);
     }));

@@ -123,6 +123,8 @@ function drawOwn(moving) {
   aspect = shownSize[0] / shownSize[1];
   if (moving || viewOf() !== onTop.view) hideServers();
   byId("loading").hidden = true;
+  // The server is not asked while the view moves.
+  if (document.body.classList.contains("stale") && byId("trouble").dataset.of === "nothing" && !own.table.isEmpty(state)) good();
   answer.lines = null;
   answer.head = own.head(state);
   own.draw(camera, state, shownSize, moving);
@@ -191,11 +193,10 @@ connection.on("picture", async (detail) => {
   if (detail.number >= viewFrom) camera = detail.camera;
   aspect = detail.width / detail.height;
   latest = detail.number;
-  document.body.classList.remove("stale");
+  good();
   answer.draw();
   tellCommand(detail);
   byId("loading").hidden = true;
-  if (byId("trouble").dataset.of === "view") byId("trouble").hidden = true;
   const now = performance.now();
   record({ kind: detail.kind, number: detail.number, at: now, latency: now - (sentAt.get(detail.number) ?? now), decode: now - arrived, width: detail.width, height: detail.height, bytes: detail.file.size });
   for (const key of sentAt.keys()) if (key < detail.number) sentAt.delete(key);
@@ -203,6 +204,7 @@ connection.on("picture", async (detail) => {
     if (detail.number === number) awaited = false;
     picture.dataset.final = detail.number;
     window.vdbviewFinal = detail.file;
+    motion.show(); // which had not been asked of a picture that was not there yet
   }
   say(detail.kind === "final" ? `${detail.width} × ${detail.height}, finished` : detail.kind === "rough" ? "finishing …" : `${detail.width} × ${detail.height}`);
 });
@@ -223,6 +225,11 @@ function trouble(text, of = "") {
   byId("trouble").dataset.of = of;
   byId("trouble").hidden = false;
   byId("loading").hidden = true;
+}
+/** The view that was asked for can be shown. */
+function good() {
+  document.body.classList.remove("stale");
+  if (["view", "nothing"].includes(byId("trouble").dataset.of)) byId("trouble").hidden = true;
 }
 
 const on = (type, take) => connection.on(type, take);
@@ -249,6 +256,7 @@ function nameFile(wanted) {
   const names = [...byId("file").options].map((each) => each.textContent);
   file = Math.min(wanted, names.length - 1);
   byId("file").value = String(file);
+  byId("file").title = names[file];
   document.title = `${names[file]} · vdbview`;
   second.setFiles(names, file);
 }
@@ -284,6 +292,7 @@ on("look", (detail) => {
   if (!orbit) camera = detail.camera;
   aspect = detail.width / detail.height;
   latest = detail.number;
+  good();
   own.illuminate(detail);
   legend.weigh();
   if (own.ready) drawOwn(false);
@@ -299,8 +308,8 @@ let print = null; // what is known of it
 let generation; // of its file
 function tellFacts() {
   const seconds = print?.seconds ? clock(print.seconds) : motion.planned && `${clock(motion.planned)} planned`;
-  byId("facts").textContent = print
-    ? [seconds, print.grams && `${print.grams.toFixed(1)} g`, `${(print.filament_mm / 1000).toFixed(2)} m of filament`, `${print.layers} layers`, `${print.height_mm.toFixed(1)} mm high`, print.slicer].filter(Boolean).join(" · ")
+  byId("facts").title = byId("facts").textContent = print
+    ? [seconds, print.grams && `${print.grams.toFixed(1)} g`, `${(print.filament_mm / 1000).toFixed(2)} m of filament`, `${print.layers} layers`, `${print.height_mm.toFixed(2).replace(/0$/, "")} mm high`, print.slicer].filter(Boolean).join(" · ")
     : "";
 }
 on("facts", ({ facts }) => {
@@ -323,11 +332,14 @@ on("progress", (detail) => {
   if (detail.number === number) say(`finishing … ${Math.round(detail.done * 100)} %`);
 });
 on("failed", (detail) => {
-  trouble(detail.text, "view");
+  const nothing = controls.whyNothing(detail.text);
+  trouble(nothing ? `Nothing is shown: ${nothing}.` : detail.text, nothing ? "nothing" : "view");
+  say("");
   document.body.classList.add("stale"); // what is on the screen is not what was asked for
   byId("command").textContent = "";
 });
 on("refused", ({ text }) => {
+  if (text.startsWith("the program has no line")) return finder.say(`The${text.slice(3)}.`);
   // A link of another version may ask for what this one does not know: the input itself is shown then.
   if (latest === 0 && toFragment(state, file) !== toFragment(initial(), file)) {
     setState(initial());
@@ -391,7 +403,7 @@ handleInput(picture, {
       ",": () => motion.step(-1), ".": () => motion.step(1), "/": () => finder.open(),
     };
     const keys = {
-      f: fit, m: () => setMeasuring(!answer.measuring), escape: () => answer.clear(), "?": help,
+      f: fit, m: () => setMeasuring(!answer.measuring), escape: () => setMeasuring(false), "?": help,
       ...(controls.layerCount > 0 && ofPrints),
     };
     const act = event.key in views ? () => views[event.key].click() : keys[event.key.toLowerCase()];
@@ -414,7 +426,7 @@ function showPanels(shown) {
   byId("panels").setAttribute("aria-expanded", String(shown));
 }
 byId("panels").addEventListener("click", () => showPanels(byId("side").classList.contains("closed")));
-if (matchMedia("(max-width: 760px)").matches) showPanels(false); // the picture first
+if (matchMedia("(max-width: 760px)").matches) showPanels((byId("legend").open = false)); // the picture first
 window.addEventListener("hashchange", () => {
   const { state: view, file: linked, wrong } = fromFragment(location.hash);
   if (wrong) trouble(wrong);

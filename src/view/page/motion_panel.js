@@ -63,8 +63,19 @@ export class MotionPanel {
     this.page.connection.send({ type: "layers" });
   }
 
-  get #layer() {
+  /** How many beads are printed, and the layer of the last one; 0: all of them. */
+  get #printed() {
+    const { table } = this.own;
+    const end = table?.complete ? table.end(this.page.state) : Infinity;
+    return { end, working: end < table?.count ? table.layerOf(Math.max(0, end - 1)) : 0 };
+  }
+  get #last() {
     return this.page.state.layers[1] || this.facts?.layers || 0;
+  }
+  /** Of those that are shown. */
+  get #layer() {
+    const { working } = this.#printed;
+    return working ? Math.max(this.page.state.layers[0] || 1, Math.min(this.#last, working)) : this.#last;
   }
   /** Beads of the layer in front: its moves. */
   get #beads() {
@@ -76,7 +87,8 @@ export class MotionPanel {
   }
   /** The last move of the layer that is printed, from 1. */
   get move() {
-    return this.#beads.filter((bead) => bead < (this.page.state.beads ?? Infinity)).length;
+    const { end } = this.#printed;
+    return this.#beads.filter((bead) => bead < end).length;
   }
   step(by) {
     byId("moves-group").open = true;
@@ -95,7 +107,8 @@ export class MotionPanel {
     const beads = this.#beads;
     if (!beads.length) return;
     move = Math.max(1, Math.min(beads.length, move));
-    this.page.select({ beads: move === beads.length ? null : beads[move - 1] + 1, printed: 100 }, moving);
+    const all = move === beads.length && this.#layer === this.#last;
+    this.page.select({ beads: all ? null : beads[move - 1] + 1, printed: 100 }, moving);
   }
 
   // The newest line that is wanted; one answer at a time.
@@ -120,10 +133,15 @@ export class MotionPanel {
       setText(label.querySelector("output"), counts && box.checked && n < KINDS.length ? String(counts[n]) : "");
     });
     byId("also-none").hidden = this.own.ready;
+    const { layers, printed } = this.page.state;
+    if (this.page.camera && (layers[0] || layers[1] || printed < 100)) this.#askLayers(); // behind the first picture
     const layer = this.#layer;
     const times = this.#layers?.seconds;
-    setText(byId("layer-info"), times && layer ? `Layer ${layer}: z ${this.#layers.z[layer].toFixed(2)} mm, takes ${clock(times[layer])}, done after ${clock(times.slice(0, layer + 1).reduce((a, b) => a + b, 0))}` : "");
+    const done = times?.slice(0, layer + 1).reduce((a, b) => a + b, 0);
+    setText(byId("layer-info"), times && layer ? `Layer ${layer}: z ${this.#layers.z[layer].toFixed(2)} mm, takes ${clock(times[layer])}, done after ${clock(done)}` : "");
     const count = this.#beads.length;
+    const now = printed < 100 && times && layer === this.#printed.working ? `, ${clock(done - times[layer] * (1 - this.move / count))}` : "";
+    setText(byId("printed-value"), `${printed} %${now}`);
     byId("moves-group").hidden = !count;
     byId("moves").max = count;
     byId("moves").value = this.move;

@@ -13,6 +13,7 @@ export class SecondPrint {
   #own = null;
   #asked = ""; // of the look
   #number = 0;
+  #failed = false; // and the server has said why
   #masks = null; // of what only one of the two has
 
   /** page: see main.js. */
@@ -46,6 +47,7 @@ export class SecondPrint {
     this.#connection = null;
     this.#masks = null;
     this.#asked = "";
+    this.#failed = false;
     byId("stage").classList.toggle("two", file !== "");
     this.#say("");
     this.page.own.paintOver(null);
@@ -65,10 +67,14 @@ export class SecondPrint {
     const own = this.#own;
     connection.on("hello", () => connection.send({ type: "open", file: Number(file) }));
     own.listen(connection);
-    connection.on("no-beads", ({ text }) => this.#say(`It can't be shown here: ${text}.`));
+    connection.on("no-beads", ({ text }) => this.#failed || this.#say(`It can't be shown here: ${text}.`));
+    for (const type of ["look", "loading"]) connection.on(type, () => (this.#failed = false));
     connection.on("look", (look) => own.illuminate(look));
     connection.on("loading", ({ step }) => own.ready || this.#say(`${step} …`));
-    connection.on("failed", ({ text }) => this.#say(text));
+    connection.on("failed", ({ text }) => {
+      byId("second-beads").hidden = this.#failed = true;
+      this.#say(text);
+    });
     connection.on("picture", () => connection.send({ type: "shown" }));
     this.page.ask(false);
   }
@@ -96,7 +102,8 @@ export class SecondPrint {
     // Numbers of beads, objects and tools are those of the first, and what is drawn besides beads.
     const its = { ...state, beads: null, objects: [], tools: [], also: [] };
     this.#askLook(its);
-    if (!this.#own.ready) return;
+    byId("second-beads").hidden = this.#failed || !this.#own.ready; // nothing rather than what was there before
+    if (byId("second-beads").hidden) return;
     this.#own.draw(camera, its, size, moving);
     if (!byId("differs").checked) this.#say("");
     else if (!moving && this.#masks) {

@@ -4,6 +4,7 @@
 export const initial = () => ({
   camera: { view: "", fov: 28 }, // as the input says
   layers: [0, 0],
+  one_layer: false, // the first is moved with the last; for the page alone
   printed: 100,
   beads: null,
   by_time: false,
@@ -22,7 +23,7 @@ export const initial = () => ({
   clip: null,
   integrator: "",
   spp: 0,
-  also: [], // what the browser draws besides beads; the server knows nothing of it
+  also: [], // what the browser draws besides beads; for the page alone
 });
 
 /** A list of names with one of them at its end, or without it. */
@@ -31,7 +32,7 @@ export const withOrWithout = (list, name, on) => list.filter((each) => each !== 
 /** For the server: without what is left open. */
 export function toMessage(state, size) {
   const message = { ...state, size };
-  delete message.also;
+  for (const key of ["also", "one_layer"]) delete message[key];
   for (const key of ["exposure", "bed", "clip", "beads", "color_range"]) if (message[key] === null) delete message[key];
   return message;
 }
