@@ -1,6 +1,7 @@
 """The viewer's search, head, scale and bed, in headless Chromium, against the program itself."""
 
 import os
+import shutil
 
 from run_tools import check, gcode, skip_without
 
