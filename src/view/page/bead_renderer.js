@@ -209,7 +209,7 @@ export class BeadRenderer {
     this.unknown = known ? null : [camera, state];
     if (known) this.known = [camera, state];
     // The canvas may have depths of 24 bits.
-    const near = known ? NEAR : Math.max(0.05, 0.9 * Math.min(...this.#corners().map((corner) => dot(sub(corner, camera.eye), camera.forward))));
+    const near = known ? NEAR : Math.max(NEAR, 0.9 * Math.min(...this.#corners().map((corner) => dot(sub(corner, camera.eye), camera.forward))));
     const values = { ...this.#stage(camera, state), ribbons: RIBBONS, least: 0.6 * coarse.stride * this.table.layerHeight, near };
     const draw = (list, anew) => {
       const ribbons = coarse.ribbonsOf(list);

@@ -4,7 +4,7 @@
 // to the eye, so that floats are fine near the surface. Depth is along the viewing direction.
 import { ROW, ROW_BITS } from "./webgl.js";
 
-export const NEAR = 1e-3; // mm, of depth 1
+export const NEAR = 0.05; // mm, of depth 1
 /** Beads that are looked for at a time, at most. */
 export const SOUGHT = 32 * ROW;
 
@@ -321,7 +321,7 @@ export const bead = (kinds) =>
   ["arcs", "tapers", "slopes", "corners", "extras"].filter((kind) => kinds[kind]).map((kind) => `#define ${kind.toUpperCase()}\n`).join("") + BEAD + CHOICE;
 
 /** Beads of the table, or of a list: each a rectangle in the plane of the side of its box that faces the eye most, large enough
- * to hide the box. It is there for what lies before the eye only, also of a bead that passes the eye, and is nowhere deeper than the bead. */
+ * to hide the box, and as near as its nearest corner. Of a bead that passes the eye it is only what lies before that. */
 export const beadVertices = (kinds) => `${HEAD}
 ${bead(kinds)}
 flat out uint id;
@@ -345,14 +345,15 @@ void main() {
   vec2 at = vec2(gl_VertexID & 1, gl_VertexID >> 1 & 1) * 2.0 - 1.0;
   vec3 corner = facing.x ? vec3(0.0, at) : facing.y ? vec3(at.x, 0.0, at.y) : vec3(at, 0.0);
   facing = equal(corner, vec3(0.0));
-  if (dot(away, vec3(facing)) < 2.0 * ${NEAR} * length(vec3(slope, 1.0))) {
+  if (dot(away, vec3(facing)) < 1e-3) {
     gl_Position = vec4(at, 1.0, 1.0); // the eye is in the box
     return;
   }
   vec3 p = mix(mix(max(high, high * share), min(low, low * share), lessThan(corner, vec3(0.0))), mix(high, low, greaterThan(low, vec3(0.0))), facing);
   p.xy = body.along * p.x + across * p.y;
-  float depth = dot(p, forward);
-  gl_Position = vec4(vec2(dot(p, right), dot(p, up)) / slope, 2.0 * ${NEAR} * 1.001 - depth, depth);
+  vec3 way = vec3(dot(forward.xy, body.along), dot(forward.xy, across), forward.z);
+  float depth = dot(p, forward), nearest = max(dot(min(low * way, high * way), vec3(1.0)), ${NEAR});
+  gl_Position = vec4(vec2(dot(p, right), dot(p, up)) / slope, min(1.0, 2.0 * ${NEAR} / nearest * 1.001 - 1.0) * depth, depth);
 }`;
 
 /** Of each bead, a point of a table: whether a point of its upper (or lower) or of its near side is not behind what the

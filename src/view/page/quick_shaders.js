@@ -1,12 +1,10 @@
 // The shaders of beads for moving pictures without a GPU: each bead is a flat ribbon that faces the eye, an arc several,
 // shaded at the middle and the edges. A pixel costs a few operations there, not a ray, and those behind others are left out
 // unshaded. A first pass makes the ribbons, one a pixel of a table: at their corners all would be found four times.
-import { HEAD, bead } from "./bead_shaders.js";
+import { HEAD, NEAR, bead } from "./bead_shaders.js";
 import { BEAD_BITS } from "./coarse_beads.js";
 import { COLORED, STAGE } from "./light_shaders.js";
 import { ROW } from "./webgl.js";
-
-const PASSED = 0.01; // mm before the eye
 
 export const ribbonFragments = (kinds) => `${HEAD}
 ${bead(kinds)}
@@ -147,7 +145,7 @@ void main() {
 #endif
   vec3 before = begins ? wayBefore(n) : vec3(0.0), after = stops ? wayAfter(last) : vec3(0.0);
   for (int k = 0; k < 2; ++k) { // what is behind the eye is cut away, too
-    vec4 plane = k == 0 ? cut : vec4(-forward, ${-PASSED});
+    vec4 plane = k == 0 ? cut : vec4(-forward, ${-NEAR});
     float past_from = dot(plane.xyz, from) - plane.w, past_to = dot(plane.xyz, to) - plane.w;
     if (plane.xyz == vec3(0.0) || max(past_from, past_to) <= 0.0) continue;
     if (min(past_from, past_to) > 0.0) return;
