@@ -204,7 +204,7 @@ connection.on("picture", async (detail) => {
     if (detail.number === number) awaited = false;
     picture.dataset.final = detail.number;
     window.vdbviewFinal = detail.file;
-    motion.show(); // which had not been asked of a picture that was not there yet
+    motion.show(true);
   }
   say(detail.kind === "final" ? `${detail.width} × ${detail.height}, finished` : detail.kind === "rough" ? "finishing …" : `${detail.width} × ${detail.height}`);
 });
@@ -293,6 +293,7 @@ on("look", (detail) => {
   aspect = detail.width / detail.height;
   latest = detail.number;
   good();
+  motion.show(true);
   own.illuminate(detail);
   legend.weigh();
   if (own.ready) drawOwn(false);

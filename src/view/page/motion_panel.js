@@ -120,8 +120,8 @@ export class MotionPanel {
     this.page.connection.send({ type: "program", bead });
   }
 
-  /** The state in the panel. */
-  show() {
+  /** The state in the panel. `rests`: it is not being moved, so that there is time to ask for what is missing. */
+  show(rests = false) {
     const { also } = this.page.state;
     const needs = KINDS.some(([name]) => also.includes(name));
     const counts = needs ? this.own.counts() : null;
@@ -134,7 +134,7 @@ export class MotionPanel {
     });
     byId("also-none").hidden = this.own.ready;
     const { layers, printed } = this.page.state;
-    if (this.page.camera && (layers[0] || layers[1] || printed < 100)) this.#askLayers(); // behind the first picture
+    if (rests && (layers[0] || layers[1] || printed < 100)) this.#askLayers();
     const layer = this.#layer;
     const times = this.#layers?.seconds;
     const done = times?.slice(0, layer + 1).reduce((a, b) => a + b, 0);
