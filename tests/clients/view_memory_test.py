@@ -1,5 +1,6 @@
 """What the viewer's page takes with a print of 400 000 beads, in headless Chromium's own processes."""
 
+import base64
 import json
 import os
 import subprocess
@@ -13,6 +14,7 @@ skip_without(("chromium", "chromedriver"), ("selenium",))
 
 from chromium import browser
 from page_memory import memory_of
+from png_file import png_pixels
 
 BEADS = 400000
 MOST, MOST_KEPT = 165, 130  # MB more than an empty page; 143 to 145 and 117 were measured, 150 and 143 with 64 bytes more a bead
@@ -50,6 +52,13 @@ def first_own(page, url):
     return taken, page.execute_async_script("window.vdbviewDrawn().then(arguments[0])")
 
 
+def alike(one, other):
+    """Whether they are of the same beads: where two are equally near, which one is seen depends on the parts they came in."""
+    (*size, a), (*its_size, b) = (png_pixels(base64.b64decode(url.split(",")[1])) for url in (one, other))
+    a, b = b"".join(a), b"".join(b)
+    return size == its_size and sum(abs(x - y) > 2 for x, y in zip(a, b)) < 1e-3 * len(a)
+
+
 with tempfile.TemporaryDirectory() as scratch:
     path = os.path.join(scratch, "beads.gcode")
     with open(path, "w", encoding="utf-8") as file:
@@ -69,7 +78,7 @@ with tempfile.TemporaryDirectory() as scratch:
         page.quit()
 print(f"renderer and GPU's process: empty {empty}, finished {finished}, turned {turned}, without garbage {kept} MB")
 check(beads, "the page draws the beads")
-check(taken in (None, whole), "the page's own picture is seen when all beads are in it, not layer by layer from below")
+check(taken is None or alike(taken, whole), "the page's own picture is seen when all beads are in it, not layer by layer from below")
 for name, moment, most in (("turned", turned, MOST), ("without garbage", kept, MOST_KEPT)):
     added = sum(moment) - sum(empty)
     check(20 < added < most, f"{name}: the page takes {added:.0f} MB more than an empty one; at most {most}")
