@@ -16,7 +16,6 @@
 #include <fmt/format.h>
 #include <openvdb/openvdb.h>
 #include <openvdb/tools/VolumeToMesh.h>
-#include <tbb/enumerable_thread_specific.h>
 #include <tbb/global_control.h>
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
@@ -99,8 +98,7 @@ void traceRays(const Peer& peer, std::span<const trace::Ray> rays, bool any, Ans
     constexpr std::size_t kChunk = 1024;
     answers.t.resize(any ? 0 : rays.size());
     answers.blocked.resize(any ? rays.size() : 0);
-    tbb::enumerable_thread_specific<std::unique_ptr<trace::Tracer>> tracers(
-        [&peer] { return peer.intersector->makeTracer(); });
+    PerThread<std::unique_ptr<trace::Tracer>> tracers([&peer] { return peer.intersector->makeTracer(); });
     parallelFor((rays.size() + kChunk - 1) / kChunk, 1, [&](std::size_t first_chunk, std::size_t last_chunk) {
         const std::size_t first = first_chunk * kChunk;
         const std::size_t count = std::min(last_chunk * kChunk, rays.size()) - first;

@@ -1,8 +1,11 @@
 // The parallel loop of the project: TBB's, with a join that ThreadSanitizer recognizes. It ends early where the work
-// was asked to stop.
+// was asked to stop. And one value for each of its threads.
 #pragma once
 
+#include <tbb/enumerable_thread_specific.h>
+
 #include <cstddef>
+#include <memory>
 #include <stop_token>
 
 #if defined(STRATUM_THREAD_SANITIZER)
@@ -84,5 +87,11 @@ void parallelFor(std::size_t count, std::size_t grain, const Body& body) {
         tbb::simple_partitioner());
 #endif
 }
+
+/// A value of T per thread, made when the thread asks for it first. local(): this thread's; iteration: all of them, in
+/// any order, after the loop. Its memory is that of operator new and not of TBB's allocator: ThreadSanitizer doesn't
+/// see into that one, and reports what one thread maps and another fills as a race.
+template <typename T>
+using PerThread = tbb::enumerable_thread_specific<T, std::allocator<T>>;
 
 }  // namespace stratum

@@ -2,8 +2,6 @@
 
 #include "base/parallel_for.h"
 
-#include <tbb/enumerable_thread_specific.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -465,7 +463,7 @@ void BeadSupport::searchBelow(std::uint32_t bead, std::vector<PathPart>& parts, 
 void BeadSupport::searchBelowAll() {
     below_.resize(level_.size());
     below_parts_.resize((level_.size() + kSearchBlock - 1) / kSearchBlock);
-    tbb::enumerable_thread_specific<Search> searches;
+    PerThread<Search> searches;
     parallelFor(below_parts_.size(), 1, [&](std::size_t first, std::size_t last) {
         Search& search = searches.local();
         std::vector<PathPart> parts;

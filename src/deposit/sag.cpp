@@ -4,8 +4,6 @@
 #include "deposit/bead_support.h"
 #include "gcode/toolpath/plan_path.h"
 
-#include <tbb/enumerable_thread_specific.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -135,7 +133,7 @@ HangingSpans findHangingSpans(const gcode::Toolpath& toolpath, double fraction) 
     const BeadSupport support(toolpath);
     const std::size_t count = toolpath.beads.size();
     std::vector<HangingSpans> blocks((count + kChainBlock - 1) / kChainBlock);
-    tbb::enumerable_thread_specific<BeadSupport::Search> searches;
+    PerThread<BeadSupport::Search> searches;
     parallelFor(blocks.size(), 1, [&](std::size_t first, std::size_t last) {
         for (std::size_t n = first; n < last; ++n)
             findSpans(toolpath, support, n * kChainBlock, std::min((n + 1) * kChainBlock, count), fraction,

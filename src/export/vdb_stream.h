@@ -1,12 +1,12 @@
 // Leaves of a print -> .vdb, without a grid: the level set goes to the disk while it is made.
 #pragma once
 
+#include "base/parallel_for.h"
 #include "export/level_set_output.h"
 #include "export/vdb_file.h"
 #include "voxelize/grid/leaf_receiver.h"
 
 #include <openvdb/openvdb.h>
-#include <tbb/enumerable_thread_specific.h>
 
 #include <cstddef>
 #include <cstdint>
@@ -87,14 +87,14 @@ private:
         openvdb::Coord origin;
         bool any = false;
         std::vector<Column> columns{voxelize::kBlockColumns};
-        tbb::enumerable_thread_specific<ByteArena> bytes;  // of the leaves
+        PerThread<ByteArena> bytes;  // of the leaves
     };
 
     void writeBlock(Block& block);
 
     const float background_;
     LevelSetOutput output_;
-    tbb::enumerable_thread_specific<std::vector<char>> packing_;  // of one leaf
+    PerThread<std::vector<char>> packing_;  // of one leaf
     Block open_, closed_;
 };
 

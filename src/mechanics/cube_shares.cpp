@@ -6,7 +6,6 @@
 #include "voxelize/beads/layer_stack.h"
 #include "voxelize/leaf/print_columns.h"
 
-#include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_sort.h>
 
 #include <algorithm>
@@ -177,7 +176,7 @@ CubeShares cubeShares(const gcode::Toolpath& toolpath, std::span<const std::uint
     const voxelize::LayerStack stack = voxelize::stackLayers(toolpath, selection);
     const voxelize::PrintColumns columns(toolpath, stack, plan, 1, voxelize::LeafColumn::Kind::values,
                                          availableMemory());
-    tbb::enumerable_thread_specific<ColumnReader> readers(
+    PerThread<ColumnReader> readers(
         [&] { return ColumnReader(columns, cubes, lines, voxelize::kWeldGap * lattice.layer_height); });
     std::vector<std::vector<PartOfCube>> parts(columns.size());
     columns.forEach(

@@ -1,9 +1,8 @@
 #include "ondemand/print_field.h"
 
+#include "base/parallel_for.h"
 #include "ondemand/brick_map.h"
 #include "voxelize/beads/footprint.h"
-
-#include <tbb/enumerable_thread_specific.h>
 
 #include <algorithm>
 #include <cmath>
@@ -38,7 +37,7 @@ struct Worker {
 
 struct PrintField::Threads {
     explicit Threads(const PrintLayout& layout) : workers([&layout] { return Worker(layout); }) {}
-    tbb::enumerable_thread_specific<Worker> workers;
+    PerThread<Worker> workers;
 };
 
 PrintField::PrintField(std::shared_ptr<const gcode::Toolpath> toolpath, std::span<const std::uint32_t> selection,

@@ -6,7 +6,6 @@
 #include "march/brick/neighbor_signs.h"
 
 #include <fmt/format.h>
-#include <tbb/enumerable_thread_specific.h>
 #include <tbb/spin_mutex.h>
 
 #include <algorithm>
@@ -233,8 +232,8 @@ private:
     const float scale_;
     const NeighborSigns neighbors_;  // of a field
     mutable std::array<tbb::spin_mutex, 1024> mutexes_;
-    mutable tbb::enumerable_thread_specific<LeafCache<float>> float_caches_;
-    mutable tbb::enumerable_thread_specific<LeafCache<std::int16_t>> quanta_caches_;
+    mutable PerThread<LeafCache<float>> float_caches_;
+    mutable PerThread<LeafCache<std::int16_t>> quanta_caches_;
 };
 
 BrickGrid::BrickGrid(const LeafSource& source, BrickValues values) : values_(values) {

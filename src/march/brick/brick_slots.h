@@ -14,8 +14,8 @@
 #pragma once
 
 #include "base/huge_array.h"
+#include "base/parallel_for.h"
 
-#include <oneapi/tbb/enumerable_thread_specific.h>
 #include <oneapi/tbb/rw_mutex.h>
 
 #include <algorithm>
@@ -124,7 +124,7 @@ private:
     std::size_t size_ = std::numeric_limits<std::size_t>::max();
     bool bounded_ = false;
     std::atomic<std::uint32_t> used_{0};
-    tbb::enumerable_thread_specific<Share> shares_;  // without a bound
+    PerThread<Share> shares_;  // without a bound
     std::atomic<std::uint32_t> share_count_{0};
     std::vector<std::uint32_t> free_;  // emptied slots; the first free_taken_ are in use again
     std::atomic<std::size_t> free_taken_{0};

@@ -4,8 +4,6 @@
 #include "voxelize/beads/layer_stack.h"
 #include "voxelize/leaf/print_columns.h"
 
-#include <tbb/enumerable_thread_specific.h>
-
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -174,8 +172,8 @@ public:
         const std::size_t count = stack_.layers.size();
         Sums sums(count);
         {
-            tbb::enumerable_thread_specific<Sums> threads([count] { return Sums(count); });
-            tbb::enumerable_thread_specific<ColumnFields> fields([this] { return ColumnFields(stack_); });
+            PerThread<Sums> threads([count] { return Sums(count); });
+            PerThread<ColumnFields> fields([this] { return ColumnFields(stack_); });
             columns_.forEach(voxelize::PrintColumns::kAllBeads, [&](std::size_t c, voxelize::LeafColumn& column) {
                 measureColumn(c, column, fields.local(), threads.local());
             });
@@ -252,7 +250,7 @@ private:
     std::vector<ConeCounts> conesOf() {
         using Counts = std::vector<ConeCounts>;
         const std::size_t count = stack_.layers.size();
-        tbb::enumerable_thread_specific<Counts> threads([count] { return Counts(count); });
+        PerThread<Counts> threads([count] { return Counts(count); });
         parallelFor(bits_.columnCount(), kPlanGrain, [&](std::size_t first, std::size_t last) {
             Counts& counts = threads.local();
             for (std::size_t c = first; c != last; ++c)

@@ -5,8 +5,6 @@
 #include "shade/camera/ray_streams.h"
 #include "shade/integrator/path.h"
 
-#include <tbb/enumerable_thread_specific.h>
-
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -98,7 +96,7 @@ std::shared_ptr<const RadianceCache> makeRadianceCache(const SceneDescription& s
         work.cache = std::make_shared<RadianceCache>(print.bounds(), cellsFor(static_cast<double>(streams * kPaths)));
     const PathIntegrator integrator(scene, print, bouncesOf(kind), work.cache.get());
     const Surfaces surfaces(scene, print);
-    tbb::enumerable_thread_specific<std::unique_ptr<trace::Tracer>> tracers([&print] { return print.makeTracer(); });
+    PerThread<std::unique_ptr<trace::Tracer>> tracers([&print] { return print.makeTracer(); });
     std::mutex checking;
     while (work.streams < streams) {
         // The picture needs the rest of its time.

@@ -9,7 +9,6 @@
 #include "shade/integrator/deep_light.h"
 
 #include <fmt/format.h>
-#include <tbb/enumerable_thread_specific.h>
 
 #include <algorithm>
 #include <bit>
@@ -265,7 +264,7 @@ private:
     const PixelBox region_;
     const std::vector<PixelBox> boxes_;
     const std::uint64_t pixels_;
-    tbb::enumerable_thread_specific<TileWorker> workers_;
+    PerThread<TileWorker> workers_;
     RenderState state_;
 };
 

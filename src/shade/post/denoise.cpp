@@ -5,7 +5,6 @@
 #include "shade/post/denoise_block.h"
 
 #include <fmt/format.h>
-#include <tbb/enumerable_thread_specific.h>
 
 #include <algorithm>
 #include <cmath>
@@ -113,7 +112,7 @@ void denoise(Film& film, const Progress& progress) {
     constexpr int kHeight = DenoisePlanes::kBlockHeight;
     const int columns = (film.width() + kWidth - 1) / kWidth;
     const int rows = (film.height() + kHeight - 1) / kHeight;
-    tbb::enumerable_thread_specific<DenoiseScratch> scratches;
+    PerThread<DenoiseScratch> scratches;
     std::mutex mutex;
     std::uint64_t done = 0;
     parallelFor(static_cast<std::size_t>(rows) * static_cast<std::size_t>(columns), 1,

@@ -8,8 +8,6 @@
 #include "shade/integrator/ambient_occlusion.h"
 #include "shade/integrator/render.h"
 
-#include <tbb/enumerable_thread_specific.h>
-
 #include <glm/geometric.hpp>
 
 #include <algorithm>
@@ -46,8 +44,7 @@ public:
 
     std::vector<std::uint8_t> run() {
         const auto tiles = shade::tilesOf({0, 0, width_, height_});
-        tbb::enumerable_thread_specific<std::unique_ptr<trace::Tracer>> tracers(
-            [this] { return picture_.print->makeTracer(); });
+        PerThread<std::unique_ptr<trace::Tracer>> tracers([this] { return picture_.print->makeTracer(); });
         parallelFor(tiles.size(), 1, [&](std::size_t first, std::size_t last) {
             for (std::size_t n = first; n != last; ++n) trace(tiles[n], *tracers.local());
         });

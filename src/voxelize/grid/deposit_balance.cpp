@@ -1,10 +1,9 @@
 #include "voxelize/grid/deposit_balance.h"
 
+#include "base/parallel_for.h"
 #include "voxelize/beads/bead_field.h"
 #include "voxelize/leaf/print_columns.h"
 #include "voxelize/swell/layer_needs.h"
-
-#include <tbb/enumerable_thread_specific.h>
 
 #include <algorithm>
 #include <atomic>
@@ -214,7 +213,7 @@ double raisedIn(const LayerStack& stack, std::vector<OpenTop>& tops, const std::
 
 DepositBalance balanceDeposit(const gcode::Toolpath& toolpath, const LayerStack& stack, std::uint32_t end) {
     const std::size_t layers = toolpath.layer_count + std::size_t{1};
-    tbb::enumerable_thread_specific<Sums> threads([layers] { return Sums(layers); });
+    PerThread<Sums> threads([layers] { return Sums(layers); });
     const double point_area = pointArea(measuringLattice(toolpath));
     forEachOpenColumn(toolpath, stack, end, [&](LeafColumn& column) {
         Sums& sums = threads.local();
@@ -280,7 +279,7 @@ double solidVolume(const gcode::Toolpath& toolpath, const LayerStack& stack, std
 std::vector<float> overfillOfBeads(const gcode::Toolpath& toolpath, const LayerStack& stack) {
     // Sums in integers, as above: those of a bead are met in any order.
     std::vector<std::atomic<std::int64_t>> laid(toolpath.beads.size());
-    tbb::enumerable_thread_specific<std::vector<double>> scratch;
+    PerThread<std::vector<double>> scratch;
     const double point_area = pointArea(measuringLattice(toolpath));
     const auto end = static_cast<std::uint32_t>(toolpath.beads.size());
     forEachOpenColumn(toolpath, stack, end, [&](LeafColumn& column) {

@@ -9,8 +9,6 @@
 #include "voxelize/beads/plan_bins.h"
 #include "voxelize/leaf/leaf_column.h"
 
-#include <tbb/enumerable_thread_specific.h>
-
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
@@ -75,7 +73,7 @@ private:
     const Lattice& lattice_;
     const double scale_;
     const PlanBins bins_;
-    mutable tbb::enumerable_thread_specific<LeafColumn> threads_;
+    mutable PerThread<LeafColumn> threads_;
 };
 
 }  // namespace stratum::voxelize
