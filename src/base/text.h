@@ -39,6 +39,14 @@ inline std::string upperCase(std::string text) {
     return text;
 }
 
+/// On one line, without what a terminal obeys: control characters become blanks.
+inline std::string onOneLine(std::string_view text) {
+    std::string line(text);
+    std::replace_if(
+        line.begin(), line.end(), [](unsigned char c) { return c < ' ' || c == 0x7f; }, ' ');
+    return line;
+}
+
 /// The number that the whole text is; nothing if it is none, or does not fit.
 /// @param base  of whole numbers, 10 by default
 template <typename Number, typename... Base>

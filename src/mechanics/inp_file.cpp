@@ -3,6 +3,7 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/parallel_for.h"
+#include "base/text.h"
 #include "mechanics/element_sets.h"
 
 #include <fmt/compile.h>
@@ -168,12 +169,8 @@ InpReport writeInp(const SolidElements& elements, const Hexahedra& mesh, const g
     FileWriter file(path);
     Lines out(file);
     InpReport report;
-    // A line break in a file's name would end the comment.
-    std::string source = options.source;
-    std::ranges::replace_if(
-        source, [](unsigned char c) { return c < ' '; }, ' ');
     out.text(fmt::format("** by Stratum {}: {}\n** mm, N, MPa; {} nodes, {} elements of {:g} mm\n", STRATUM_VERSION,
-                         source, mesh.nodes.size(), elements.list.size(), elements.edge));
+                         onOneLine(options.source), mesh.nodes.size(), elements.list.size(), elements.edge));
     writeNodes(elements, mesh, options, out);
     writeElements(mesh, out);
     const std::vector<NamedSet> of_elements = elementSets(elements, toolpath);

@@ -18,6 +18,12 @@ TEST(Text, TrimsQuotes) {
     EXPECT_EQ(trimQuoted("\"\""), "");
 }
 
+TEST(Text, PutsLinesOnOne) {
+    EXPECT_EQ(onOneLine("a\r\nb\tc\x1b[0m\x7f"), "a  b c [0m ");
+    EXPECT_EQ(onOneLine("Gr\xc3\xbcn"), "Gr\xc3\xbcn");
+    EXPECT_EQ(onOneLine(""), "");
+}
+
 TEST(Text, ChangesTheCaseOfAsciiAlone) {
     EXPECT_EQ(lowerCase('Z'), 'z');
     EXPECT_EQ(lowerCase('['), '[');

@@ -5,7 +5,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <system_error>
@@ -20,11 +19,8 @@ constexpr std::size_t kLongestQuote = 60;  // bytes of the file in a message
         fmt::format("{}: {} is {}; expected a number from {:g} to {:g}", place, what, text, bounds.least, bounds.most));
 }
 
-// On one line, without what a terminal obeys.
 std::string quoted(std::string_view text) {
-    std::string line(text.substr(0, kLongestQuote));
-    std::ranges::replace_if(
-        line, [](unsigned char c) { return c < ' ' || c == 0x7f; }, ' ');
+    const std::string line = onOneLine(text.substr(0, kLongestQuote));
     return line.empty() ? "empty" : fmt::format("'{}'", line);
 }
 

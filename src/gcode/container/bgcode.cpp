@@ -154,13 +154,6 @@ namespace {
 
 constexpr std::string_view kBlank = " \t\r";
 
-// Removes line ends: the rest of a value behind one would be read as a command.
-std::string oneLine(std::string_view text) {
-    std::string line(text);
-    std::replace(line.begin(), line.end(), '\r', ' ');
-    return line;
-}
-
 // "986.61" or, by tool, "12.5, 0.00, 7": the sum. Absent if any part is no number.
 std::optional<double> sumOf(std::string_view list) {
     double sum = 0;
@@ -183,8 +176,9 @@ void readIniMetadata(std::string_view text, std::vector<std::pair<std::string, s
         const std::string_view line = takePiece(text, '\n');
         const auto equals = line.find('=');
         if (equals != std::string_view::npos)
-            metadata.emplace_back(oneLine(trim(line.substr(0, equals), kBlank)),
-                                  oneLine(trim(line.substr(equals + 1), kBlank)));
+            // The rest of a value behind a line end would be read as a command.
+            metadata.emplace_back(onOneLine(trim(line.substr(0, equals), kBlank)),
+                                  onOneLine(trim(line.substr(equals + 1), kBlank)));
     }
 }
 
