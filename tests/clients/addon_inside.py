@@ -15,7 +15,6 @@ TILE, TWO_TONE = (os.path.join(DATA, name) for name in ("tile.gcode", "two_tone.
 PLAIN = "-skirt,-brim,-custom"
 bpy.ops.preferences.addon_install(filepath=ZIP)
 bpy.ops.preferences.addon_enable(module="stratum_import")
-import stratum_import  # noqa: E402
 from stratum_import import conversion, materials, objects, session, settings  # noqa: E402
 
 tempfile.tempdir = os.path.join(FOLDER, "temporary")

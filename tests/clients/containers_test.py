@@ -3,7 +3,6 @@
 import gzip
 import json
 import os
-import struct
 import subprocess
 
 from packed_gcode import bgcode, gx, zipped

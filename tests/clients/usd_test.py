@@ -1,6 +1,5 @@
 """The .usda beside a .vdb: names every grid, by a relative path, with units and axes; and others read the .vdb."""
 
-import os
 import re
 import subprocess
 
