@@ -62,7 +62,7 @@ void addOptions(CLI::App& app, ViewCommand& o) {
     app.add_option("--port", o.port, "Port to listen on (default: any that is free)")->type_name("N")->group(server);
     app.add_option("--listen", o.listen,
                    "Address to listen on (default 127.0.0.1: this machine alone). Who has the URL sees the input, and "
-                   "the connection is not encrypted")
+                   "the connection is not encrypted; pages then can't send files")
         ->type_name("ADDRESS")
         ->group(server);
     app.add_option(
@@ -137,6 +137,20 @@ view::GivenInput givenInput(const ViewCommand& o, const std::string& path, const
     return given;
 }
 
+// An input that is read anew when its file has changed.
+view::GivenInput watchedInput(const ViewCommand& o, const std::string& path, const std::vector<std::string>& words) {
+    view::GivenInput given = givenInput(o, path, words);
+    given.again = [&o, path, words] { return givenInput(o, path, words); };
+    return given;
+}
+
+// Of a file that a page has sent.
+view::GivenInput sentInput(const ViewCommand& o, const std::string& path, const std::vector<std::string>& words) {
+    // Nothing that a page says may name a file of this machine.
+    if (isScene(path)) throw InputError("a scene names other files: give it to vdbview on the command line");
+    return watchedInput(o, path, words);
+}
+
 /// A page that leads to the URL, for this user alone: arguments of processes can be read by all.
 class LeadingPage {
 public:
@@ -203,15 +217,15 @@ void run(const CLI::App& app, const ViewCommand& o) {
     std::vector<view::GivenInput> inputs;
     for (const std::string& path : o.inputs) {
         try {
-            inputs.push_back(givenInput(o, path, words));
+            inputs.push_back(watchedInput(o, path, words));
         } catch (const InputError& error) {
             // Of several inputs a bad one is shown when it has been written anew.
             if (o.inputs.size() == 1) throw;
             tools::tellError(fmt::format("vdbview: {}\n", error.what()));
             inputs.emplace_back();
             inputs.back().path = path;
+            inputs.back().again = [&o, path, words] { return givenInput(o, path, words); };
         }
-        inputs.back().again = [&o, path, words] { return givenInput(o, path, words); };
     }
     tools::RunFiles files;
     for (const view::GivenInput& input : inputs) {
@@ -220,11 +234,16 @@ void run(const CLI::App& app, const ViewCommand& o) {
             files.reads(file);
     }
     files.writesBeside(o.common.stats, "--stats");
-    auto viewer = std::make_unique<view::Viewer>(std::move(inputs), [&o](const std::string& text) {
-        if (o.common.quiet) return;
-        tools::tellError(fmt::format("vdbview: {}\n", text));
-    });
     serve::ServerOptions options;
+    view::Viewer::Read read_sent;
+    if (serve::isLoopback(o.listen) && o.hosts.empty()) {
+        read_sent = [&](const std::string& path) { return sentInput(o, path, words); };
+        options.limits.file_bytes = view::SentFiles::kMostBytes;
+    }
+    const auto say = [&o](const std::string& text) {
+        if (!o.common.quiet) tools::tellError(fmt::format("vdbview: {}\n", text));
+    };
+    auto viewer = std::make_unique<view::Viewer>(std::move(inputs), say, std::move(read_sent));
     options.address = o.listen;
     options.port = o.port;
     options.hosts = o.hosts;

@@ -1,6 +1,7 @@
 #include "serve/server.h"
 
 #include "base/error.h"
+#include "base/text.h"
 #include "serve/socket_client.h"
 
 #include <fmt/format.h>
@@ -12,6 +13,7 @@
 #include <boost/asio/steady_timer.hpp>
 #include <boost/beast/http/buffer_body.hpp>
 #include <boost/beast/http/error.hpp>
+#include <boost/beast/http/file_body.hpp>
 #include <boost/beast/http/parser.hpp>
 #include <boost/beast/http/read.hpp>
 #include <boost/beast/http/write.hpp>
@@ -36,10 +38,25 @@ constexpr auto kPatience = std::chrono::seconds(20);     // for a request to arr
 constexpr auto kPause = std::chrono::milliseconds(100);  // after a connection could not be taken
 constexpr std::uint32_t kMostHeader = 16 << 10;          // bytes
 constexpr std::string_view kSocket = "socket";           // below the token
+constexpr std::string_view kFiles = "files/";            // the same
 // Nothing of other hosts, no frames around the page, no sniffing of types.
 constexpr const char* kPolicy =
     "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' blob: data:; connect-src 'self'; "
     "base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
+
+constexpr const char* kText = "text/plain; charset=utf-8";
+constexpr const char* kStranger = "a page of another site";
+
+// "%20" and the like (RFC 3986, 2.1); what is no such escape stays.
+std::string decoded(std::string_view text) {
+    std::string plain;
+    for (std::size_t n = 0; n < text.size(); ++n) {
+        const auto byte = text[n] == '%' ? parsed<unsigned>(text.substr(n + 1, 2), 16) : std::nullopt;
+        plain += byte ? static_cast<char>(*byte) : text[n];
+        if (byte) n += 2;
+    }
+    return plain;
+}
 
 class Connection;
 
@@ -54,6 +71,7 @@ struct Shared {
     std::size_t connections = 0, clients = 0;
     std::list<Connection*> unanswered;  // of whom no whole request has come, the longest first
     std::function<void()> freed;        // a connection is over
+    bool receives = false;              // a file: one at a time, so that what is kept is bounded
 };
 
 /// One connection, until it is answered or has become a web socket.
@@ -64,6 +82,7 @@ public:
     }
     ~Connection() {
         shared_.unanswered.remove(this);
+        if (file_) shared_.receives = false;
         if (upgraded_) return;
         --shared_.connections;
         shared_.freed();
@@ -81,21 +100,24 @@ public:
         shared_.unanswered.remove(this);
         shared_.unanswered.push_back(this);
         parser_.emplace();
-        parser_->body_limit(0);
+        parser_->body_limit(shared_.limits.file_bytes);
         parser_->header_limit(kMostHeader);
         stream_.expires_after(kPatience);
-        http::async_read(stream_, buffer_, *parser_, [self = shared_from_this()](beast::error_code error, std::size_t) {
-            if (error == http::error::body_limit || error == http::error::header_limit)
-                return self->refuse(http::status::payload_too_large, "too large");
-            if (error) return;  // gone, or never was HTTP
-            self->answer();
-        });
+        http::async_read_header(stream_, buffer_, *parser_,
+                                [self = shared_from_this()](beast::error_code error, std::size_t) {
+                                    if (error == http::error::body_limit || error == http::error::header_limit)
+                                        return self->refuse(http::status::payload_too_large, "too large");
+                                    if (error) return;  // gone, or never was HTTP
+                                    self->answer();
+                                });
     }
 
 private:
     void answer() {
         shared_.unanswered.remove(this);
         const Request& request = parser_->get();
+        head_ = request.method() == http::verb::head;
+        keeps_ = !head_ && parser_->is_done() && parser_->keep_alive();
         const auto host = std::string_view(request[http::field::host].data(), request[http::field::host].size());
         // Of two, a proxy may have looked at the other.
         if (request.count(http::field::host) > 1 || request.count(http::field::origin) > 1)
@@ -105,6 +127,9 @@ private:
         std::string_view rest;
         if (!shared_.access.below(target, rest))
             return refuse(http::status::forbidden, "This address needs the token that vdbview has printed.");
+        if (request.method() == http::verb::put && rest.starts_with(kFiles) && shared_.limits.file_bytes > 0)
+            return receive(host, rest.substr(kFiles.size()));
+        if (!parser_->is_done()) return refuse(http::status::payload_too_large, "too large");
         if (rest == kSocket) return upgrade(host);
         if (request.method() != http::verb::get && request.method() != http::verb::head)
             return refuse(http::status::method_not_allowed, "only GET");
@@ -114,12 +139,15 @@ private:
         send(http::status::ok, file->type, std::string(file->bytes));
     }
 
+    bool isOfOwnPage(std::string_view host) {
+        const auto origin = parser_->get()[http::field::origin];
+        return shared_.access.ownOrigin({origin.data(), origin.size()}, host);
+    }
+
     void upgrade(std::string_view host) {
         const Request& request = parser_->get();
         if (!beast::websocket::is_upgrade(request)) return refuse(http::status::upgrade_required, "a web socket");
-        const auto origin = request[http::field::origin];
-        if (!shared_.access.ownOrigin({origin.data(), origin.size()}, host))
-            return refuse(http::status::forbidden, "a page of another site");
+        if (!isOfOwnPage(host)) return refuse(http::status::forbidden, kStranger);
         if (shared_.clients >= shared_.limits.clients)
             return refuse(http::status::service_unavailable, "too many pages are open");
         ++shared_.clients;
@@ -132,12 +160,57 @@ private:
         std::make_shared<SocketClient>(std::move(stream_), shared_.handler, shared_.limits, gone)->start(request);
     }
 
+    void receive(std::string_view host, std::string_view name) {
+        if (!isOfOwnPage(host)) return refuse(http::status::forbidden, kStranger);
+        if (shared_.receives) return refuse(http::status::service_unavailable, "another page sends a file; try again");
+        try {
+            incoming_ = shared_.handler.incoming(decoded(name));
+        } catch (const InputError& error) {
+            return refuse(http::status::bad_request, error.what());
+        }
+        file_.emplace(std::move(*parser_));
+        shared_.receives = true;
+        beast::error_code error;
+        file_->get().body().open(incoming_.c_str(), beast::file_mode::write_new, error);
+        if (error) return refuse(http::status::insufficient_storage, incoming_.string() + ": can't be written");
+        receiveSome();
+    }
+
+    // By pieces: who sends has his time for each, and not for all of them.
+    void receiveSome() {
+        stream_.expires_after(kPatience);
+        http::async_read_some(stream_, buffer_, *file_,
+                              [self = shared_from_this()](beast::error_code error, std::size_t) {
+                                  if (error) return self->drop(error);
+                                  if (!self->file_->is_done()) return self->receiveSome();
+                                  self->file_->get().body().close();
+                                  self->keeps_ = self->file_->keep_alive();
+                                  std::string told;
+                                  try {
+                                      told = self->shared_.handler.arrived(self->incoming_);
+                                  } catch (const InputError& problem) {
+                                      return self->refuse(http::status::bad_request, problem.what());
+                                  }
+                                  self->send(http::status::ok, kText, std::move(told));
+                              });
+    }
+
+    // What has come of a file that will not be whole.
+    void drop(beast::error_code error) {
+        file_->get().body().close();
+        std::error_code ignored;
+        std::filesystem::remove(incoming_, ignored);
+        const bool large = error == http::error::body_limit;
+        refuse(large ? http::status::payload_too_large : http::status::insufficient_storage,
+               large ? "too large" : error.message());
+    }
+
     void refuse(http::status status, std::string_view why) {
-        send(status, "text/plain; charset=utf-8", std::string(why) + "\n");
+        keeps_ = false;  // something of the request may still come
+        send(status, kText, std::string(why) + "\n");
     }
 
     void send(http::status status, std::string_view type, std::string body) {
-        const bool head = parser_->get().method() == http::verb::head;
         response_.result(status);
         response_.version(11);
         response_.set(http::field::content_type, beast::string_view(type.data(), type.size()));
@@ -147,14 +220,15 @@ private:
         response_.set("Referrer-Policy", "no-referrer");
         response_.set("Cross-Origin-Resource-Policy", "same-origin");
         response_.content_length(body.size());
-        if (!head) response_.body() = std::move(body);
-        const bool keep = status == http::status::ok && !head && parser_->get().keep_alive();
-        response_.keep_alive(keep);
+        if (!head_) response_.body() = std::move(body);
+        response_.keep_alive(keeps_);
         stream_.expires_after(kPatience);
-        http::async_write(stream_, response_, [self = shared_from_this(), keep](beast::error_code error, std::size_t) {
+        http::async_write(stream_, response_, [self = shared_from_this()](beast::error_code error, std::size_t) {
             if (error) return;
             self->response_ = {};
-            if (keep) return self->read();
+            if (self->file_) self->shared_.receives = false;
+            self->file_.reset();
+            if (self->keeps_) return self->read();
             self->stream_.socket().shutdown(tcp::socket::shutdown_send, error);
         });
     }
@@ -163,6 +237,9 @@ private:
     Shared& shared_;
     beast::flat_buffer buffer_{kMostHeader};
     std::optional<http::request_parser<http::string_body>> parser_;
+    std::optional<http::request_parser<http::file_body>> file_;  // of a file that the page sends
+    std::filesystem::path incoming_;                             // its place
+    bool head_ = false, keeps_ = false;                          // of the request: it is HEAD; another one may follow
     http::response<http::string_body> response_;
     bool upgraded_ = false;
 };
@@ -217,6 +294,14 @@ struct Server::Parts {
                               });
     }
 };
+
+std::filesystem::path Handler::incoming(std::string_view) { throw InputError("no files are taken here"); }
+std::string Handler::arrived(const std::filesystem::path&) { return {}; }
+
+bool isLoopback(const std::string& address) {
+    beast::error_code error;
+    return asio::ip::make_address(address, error).is_loopback() && !error;
+}
 
 Server::Server(const ServerOptions& options, std::vector<PageFile> files, Handler& handler)
     : parts_(std::make_unique<Parts>()) {

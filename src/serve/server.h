@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <memory>
 #include <string>
@@ -27,6 +28,7 @@ struct Limits {
     std::size_t message_bytes = 64 << 10;  ///< of a message to the server; a longer one ends its connection
     double messages_per_second = 250;      ///< mean of a client; more end its connection
     std::size_t queued_bytes = 64 << 20;   ///< that wait to be sent to a client; more end its connection
+    std::uint64_t file_bytes = 0;          ///< of a file that a page sends; 0: none is taken
 };
 
 /// A web socket. send() and close() may be called from any thread, also after the other side has gone.
@@ -45,6 +47,12 @@ public:
     virtual void opened(const std::shared_ptr<Client>& client) = 0;
     virtual void received(const std::shared_ptr<Client>& client, std::string_view text) = 0;
     virtual void closed(const std::shared_ptr<Client>& client) = 0;
+
+    // A page sends a file: PUT /TOKEN/files/NAME. What these throw as InputError is the answer that it gets.
+    /// Where the file is to be written. `name` is whatever the page says.
+    virtual std::filesystem::path incoming(std::string_view name);
+    /// All of it is there. Returns what the page is told.
+    virtual std::string arrived(const std::filesystem::path& path);
 };
 
 struct ServerOptions {
@@ -54,6 +62,9 @@ struct ServerOptions {
     std::string token;                  ///< empty: a random one
     Limits limits;
 };
+
+/// Whether only this machine can reach a server that listens there.
+bool isLoopback(const std::string& address);
 
 /// Listens from construction on. Throws UsageError for an address or a port that can't be had.
 class Server {

@@ -44,16 +44,24 @@ Output outputTo(const std::shared_ptr<serve::Client>& client) {
 
 }  // namespace
 
-Viewer::Viewer(std::vector<GivenInput> inputs, std::function<void(const std::string&)> say) : say_(std::move(say)) {
-    for (GivenInput& given : inputs) {
-        inputs_.push_back(std::make_unique<Input>(std::move(given)));
-        watch_.add(inputs_.back()->files);
-    }
+Viewer::Viewer(std::vector<GivenInput> inputs, Say say, Read read) : say_(std::move(say)), read_(std::move(read)) {
+    for (GivenInput& given : inputs) add(std::move(given));
     // The first is read before a page asks for it.
     loop_.post([this] { load(*inputs_.front()); });
 }
 
 Viewer::~Viewer() = default;
+
+void Viewer::add(GivenInput given) {
+    inputs_.push_back(std::make_unique<Input>(std::move(given)));
+    watch_.add(inputs_.back()->files);
+}
+
+Json Viewer::files() const {
+    Json names = Json::array();
+    for (const auto& input : inputs_) names.push_back(std::filesystem::path(input->path).filename().string());
+    return names;
+}
 
 void Viewer::load(Input& input) {
     Stopwatch watch;
@@ -93,7 +101,9 @@ void Viewer::changed(const std::set<std::string>& paths) {
         for (const auto& [client, page] : pages_)
             if (inputs_[page.file].get() == &input) viewports.push_back(page.viewport);
         loop_.post([this, &input, viewports] {
+            const bool idle = viewports.empty() && input.scene.empty() && input.failure.empty();
             input.document.forget();
+            if (idle) return;  // nobody has asked for it
             for (const auto& viewport : viewports) viewport->output().text({{"type", "loading"}, {"step", "reading"}});
             load(input);
             for (const auto& viewport : viewports) {
@@ -108,9 +118,29 @@ void Viewer::changed(const std::set<std::string>& paths) {
     }
 }
 
+bool Viewer::isLookedAt(std::size_t file) const {
+    return std::any_of(pages_.begin(), pages_.end(), [&](const auto& each) { return each.second.file == file; });
+}
+
+// Of what no page looks at, the input that was left last stays ready: people go to and fro between two.
+void Viewer::forgetOthers(std::size_t left) {
+    for (std::size_t n = 0; n < inputs_.size(); ++n) {
+        if (n == left || isLookedAt(n)) continue;
+        loop_.post([&input = *inputs_[n]] {
+            if (input.scene.empty()) return;
+            input.scene.forget();
+            input.document.forget();
+        });
+    }
+}
+
 void Viewer::open(const std::shared_ptr<serve::Client>& client, std::size_t file) {
     Page& page = pages_[client];
-    if (page.viewport) loop_.remove(page.viewport);
+    if (page.viewport) {
+        loop_.remove(page.viewport);
+        const std::size_t left = std::exchange(page.file, file);
+        if (left != file) forgetOthers(left);
+    }
     page = {nullptr, file};
     Input& input = *inputs_[file];
     page.viewport = std::make_shared<Viewport>(input.document, outputTo(client));
@@ -133,9 +163,8 @@ void Viewer::open(const std::shared_ptr<serve::Client>& client, std::size_t file
 }
 
 void Viewer::opened(const std::shared_ptr<serve::Client>& client) {
-    Json files = Json::array();
-    for (const auto& input : inputs_) files.push_back(std::filesystem::path(input->path).filename().string());
-    client->sendText(jsonText(Json{{"type", "hello"}, {"version", STRATUM_VERSION}, {"files", std::move(files)}}));
+    client->sendText(jsonText(
+        Json{{"type", "hello"}, {"version", STRATUM_VERSION}, {"files", files()}, {"takes", read_ ? SentFiles::kMostBytes : 0}}));
     open(client, 0);
 }
 
@@ -161,6 +190,22 @@ void Viewer::closed(const std::shared_ptr<serve::Client>& client) {
     if (page == pages_.end()) return;
     loop_.remove(page->second.viewport);
     pages_.erase(page);
+}
+
+std::filesystem::path Viewer::incoming(std::string_view name) {
+    if (!read_) throw InputError("files are taken from pages of this machine alone; name them on the command line");
+    return sent_.place(name);
+}
+
+std::string Viewer::arrived(const std::filesystem::path& path) {
+    try {
+        add(read_(path.string()));
+    } catch (const InputError&) {
+        SentFiles::remove(path);
+        throw;
+    }
+    for (const auto& [client, page] : pages_) client->sendText(jsonText(Json{{"type", "files"}, {"files", files()}}));
+    return std::to_string(inputs_.size() - 1);
 }
 
 }  // namespace stratum::view

@@ -6,7 +6,11 @@
 #include "view/input/document.h"
 #include "view/input/view_scene.h"
 #include "view/render_loop.h"
+#include "view/sent_files.h"
 
+#include <nlohmann/json.hpp>
+
+#include <filesystem>
 #include <functional>
 #include <map>
 #include <memory>
@@ -22,11 +26,16 @@ namespace stratum::view {
 std::vector<serve::PageFile> pageFiles();
 
 /// Handles what pages send, on the server's thread; pictures are made on the loop's thread. Every page has its own
-/// view; what is read of an input is shared.
+/// view; what is read of an input is shared, and forgotten when other inputs are looked at.
 class Viewer final : public serve::Handler {
 public:
-    /// @param say  tells the terminal of reloads and of inputs that fail; called on any thread, one call at a time
-    Viewer(std::vector<GivenInput> inputs, std::function<void(const std::string&)> say);
+    using Say = std::function<void(const std::string&)>;
+    /// Throws InputError.
+    using Read = std::function<GivenInput(const std::string& path)>;
+
+    /// @param say   tells the terminal of reloads and of inputs that fail; called on any thread, one call at a time
+    /// @param read  makes an input of a file that a page sends; none: pages send no files
+    Viewer(std::vector<GivenInput> inputs, Say say, Read read = {});
     ~Viewer() override;
     Viewer(const Viewer&) = delete;
     Viewer& operator=(const Viewer&) = delete;
@@ -42,6 +51,8 @@ public:
     void opened(const std::shared_ptr<serve::Client>& client) override;
     void received(const std::shared_ptr<serve::Client>& client, std::string_view text) override;
     void closed(const std::shared_ptr<serve::Client>& client) override;
+    std::filesystem::path incoming(std::string_view name) override;
+    std::string arrived(const std::filesystem::path& path) override;
 
 private:
     /// An input and what is ready of it; of the loop's thread.
@@ -60,11 +71,17 @@ private:
         std::shared_ptr<Viewport> viewport;
         std::size_t file = 0;
     };
+    void add(GivenInput given);
+    nlohmann::json files() const;
     void load(Input& input);
     void open(const std::shared_ptr<serve::Client>& client, std::size_t file);
+    bool isLookedAt(std::size_t file) const;
+    void forgetOthers(std::size_t left);
 
-    const std::function<void(const std::string&)> say_;
+    const Say say_;
+    const Read read_;
     FileWatch watch_;
+    SentFiles sent_;
     std::vector<std::unique_ptr<Input>> inputs_;
     std::map<std::shared_ptr<serve::Client>, Page> pages_;  // of the server's thread
     RenderLoop loop_;                                       // the last one: it uses the others

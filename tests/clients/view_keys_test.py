@@ -1,8 +1,10 @@
 """The viewer by its keys and from one state to the next, in headless Chromium: what a hand does, with real key presses."""
 
 import os
+import re
 import shutil
 import subprocess
+import time
 
 from run_tools import BIN, check, gcode, run, skip_without
 
@@ -338,7 +340,51 @@ def nozzle():
         check(js("return document.getElementById('measure').getAttribute('aria-pressed')") == "false", "measuring ends by it")
 
 
+def dropped():
+    """A file that is dropped on the page, or chosen, is a further input; the finished picture is that of its command."""
+    name = "two tone (1).gcode"
+    drop = """const [name, text, done] = arguments;
+              const files = new DataTransfer();
+              files.items.add(new File([text], name));
+              for (const type of ["dragover", "drop"])
+                document.body.dispatchEvent(new DragEvent(type, { bubbles: true, cancelable: true, dataTransfer: files }));
+              return document.body.className"""
+    with open(gcode("two_tone.gcode"), encoding="utf-8") as file:
+        text = file.read()
+    listed = "[...document.getElementById('file').options].map((each) => each.text)"
+    shown = "document.getElementById('file').selectedOptions[0].text"
+    command = "document.getElementById('command').textContent"
+    with drawn(gcode("tile.gcode")):
+        check("dropping" not in js(drop, name, text), "nothing hovers over the page any more")
+        until(f"{shown} === '{name}'", "it is looked at")
+        until(f"{command}.includes('{name}')", "and its command is there")
+        until("document.getElementById('tools').children.length === 2", "with its tools")
+        path = re.search(r"'([^']*)'", js(f"return {command}")).group(1)
+        with open(path, encoding="utf-8") as file:
+            check(file.read() == text, f"{path} is what was dropped")
+        check(os.stat(os.path.dirname(os.path.dirname(path))).st_mode & 0o077 == 0, "for this user alone")
+        # The button's list of files.
+        page.find_element(By.ID, "chosen").send_keys(gcode("tile_arcs.gcode"))
+        until(f"{shown} === 'tile_arcs.gcode'", "the chosen one is looked at")
+        check(js(f"return {listed}") == ["tile.gcode", name, "tile_arcs.gcode"], "all can be chosen")
+        js(drop, "bad.gcode", "no print at all")
+        until(f"{shown} === 'bad.gcode'", "a bad one, too")
+        until("document.getElementById('trouble-text').textContent.includes('bad.gcode')", "and the page says what is wrong with it")
+        js(drop, "scene.json", '{"print": "/etc/passwd"}')
+        until("document.getElementById('trouble-text').textContent.startsWith('scene.json was not opened: a scene names')", "scenes are refused")
+        check(js(f"return {listed}")[-1] == "bad.gcode", "and not listed")
+    for _ in range(100):
+        if os.path.exists(path):
+            time.sleep(0.1)
+    check(not os.path.exists(path), "the server's end removes them")
+    with drawn(gcode("tile.gcode"), None, "--listen", "0.0.0.0"):
+        check(js("return document.getElementById('open').hidden"), "others' pages have no such button")
+        js(drop, name, text)
+        until("document.getElementById('trouble-text').textContent.startsWith('This server takes no files')", "and say why")
+
+
 try:
+    dropped()
     keys_of_layers()
     one_layer_alone()
     share()

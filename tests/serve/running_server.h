@@ -5,6 +5,7 @@
 #include "serve/server.h"
 
 #include <condition_variable>
+#include <filesystem>
 #include <functional>
 #include <memory>
 #include <mutex>
@@ -29,6 +30,14 @@ public:
         answer(client, text);
     }
     void closed(const Clients& client) override { note("closed", client); }
+    /// Files that are sent get places here; empty: they are refused.
+    std::filesystem::path folder;
+    std::filesystem::path incoming(std::string_view name) override {
+        if (folder.empty()) return Handler::incoming(name);
+        note("incoming " + std::string(name), {});
+        return folder / "sent";
+    }
+    std::string arrived(const std::filesystem::path& path) override { return path.filename().string() + " is there"; }
 
     /// Whether it happens within 20 s.
     bool waitFor(const std::string& event) {

@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "running_server.h"
+#include "scratch_folder.h"
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
@@ -9,6 +10,11 @@
 
 #include <chrono>
 #include <ctime>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+#include <string_view>
 #include <thread>
 #include <vector>
 
@@ -119,6 +125,92 @@ TEST(Server, RefusesPlacesThatCannotBeHad) {
     options.address = "127.0.0.1";
     options.port = other.page.port;
     EXPECT_THROW(Server(options, {}, handler), UsageError);
+}
+
+std::string textOf(const std::filesystem::path& path) {
+    std::ifstream file(path, std::ios::binary);
+    return {std::istreambuf_iterator<char>(file), {}};
+}
+
+// The headers of a file that a page sends, and what comes of it.
+std::string sending(const test::PageAddress& page, std::size_t length, std::string_view bytes) {
+    return "Origin: http://" + page.host + "\r\nContent-Length: " + std::to_string(length) + "\r\n\r\n" +
+           std::string(bytes);
+}
+
+TEST(Server, TakesFilesOfItsOwnPage) {
+    const test::ScratchFolder folder;
+    Limits limits;
+    limits.file_bytes = 1 << 20;
+    test::RunningServer server(limits);
+    const test::PageAddress& page = server.page;
+    const std::string path = page.path + "files/a%20b%2Fc%zz.gcode";
+    EXPECT_EQ(server.client().get(page, path, sending(page, 5, "hello"), "PUT"), 400);  // this handler takes none
+    server.recorder.folder = folder.path();
+    const std::string bytes(300000, 'x');
+    test::RawClient client = server.client();
+    client.send("PUT " + path + " HTTP/1.1\r\nHost: " + page.host + "\r\n" + sending(page, bytes.size(), bytes));
+    EXPECT_NE(client.readUntil("is there").find("200 OK"), std::string::npos);
+    EXPECT_TRUE(server.recorder.waitFor("incoming a b/c%zz.gcode"));
+    EXPECT_EQ(textOf(folder / "sent"), bytes);
+    // The connection goes on; what is there is not written over.
+    client.send("PUT " + path + " HTTP/1.1\r\nHost: " + page.host + "\r\n" + sending(page, 5, "hello"));
+    EXPECT_NE(client.readUntil("\r\n").find(" 507 "), std::string::npos);
+    EXPECT_EQ(textOf(folder / "sent"), bytes);
+}
+
+TEST(Server, RefusesFilesOfOthers) {
+    const test::ScratchFolder folder;
+    Limits limits;
+    limits.file_bytes = 1 << 20;
+    test::RunningServer server(limits);
+    server.recorder.folder = folder.path();
+    const test::PageAddress& page = server.page;
+    const std::string path = page.path + "files/part.gcode";
+    EXPECT_EQ(server.client().get(page, path, "Content-Length: 5\r\n\r\nhello", "PUT"), 403);
+    EXPECT_EQ(server.client().get(page, path, "Origin: http://evil.example\r\nContent-Length: 5\r\n\r\nhello", "PUT"),
+              403);
+    EXPECT_EQ(server.client().get(page, "/files/part.gcode", sending(page, 5, "hello"), "PUT"), 403);
+    EXPECT_EQ(server.client().get(page, path, sending(page, 2 << 20, ""), "PUT"), 413);
+    EXPECT_EQ(server.client().get(page, path, sending(page, 5, "hello"), "POST"), 413);
+    EXPECT_FALSE(std::filesystem::exists(folder / "sent"));
+    // Without a length it is known when too much has come.
+    const std::string chunk = "10000\r\n" + std::string(0x10000, 'x') + "\r\n";
+    std::string chunks = "Origin: http://" + page.host + "\r\nTransfer-Encoding: chunked\r\n\r\n";
+    for (int n = 0; n < 20; ++n) chunks += chunk;
+    test::RawClient client = server.client();
+    client.send("PUT " + path + " HTTP/1.1\r\nHost: " + page.host + "\r\n" + chunks);
+    EXPECT_NE(client.readUntil("\r\n").find(" 413 "), std::string::npos);
+    EXPECT_FALSE(std::filesystem::exists(folder / "sent"));
+}
+
+TEST(Server, KeepsNothingOfAFileThatIsCutShort) {
+    const test::ScratchFolder folder;
+    Limits limits;
+    limits.file_bytes = 1 << 20;
+    test::RunningServer server(limits);
+    server.recorder.folder = folder.path();
+    const test::PageAddress& page = server.page;
+    const std::string head = "PUT " + page.path + "files/part.gcode HTTP/1.1\r\nHost: " + page.host + "\r\n";
+    {
+        test::RawClient client = server.client();
+        client.send(head + sending(page, 100, "some"));
+        EXPECT_TRUE(server.recorder.waitFor("incoming part.gcode"));
+        // One at a time.
+        EXPECT_EQ(server.client().get(page, page.path + "files/b.gcode", sending(page, 5, "hello"), "PUT"), 503);
+    }
+    const auto patience = steady_clock::now() + std::chrono::seconds(20);
+    while (std::filesystem::exists(folder / "sent") && steady_clock::now() < patience)
+        std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    EXPECT_FALSE(std::filesystem::exists(folder / "sent"));
+    EXPECT_EQ(server.client().get(page, page.path + "files/b.gcode", sending(page, 5, "hello"), "PUT"), 200);
+    EXPECT_EQ(textOf(folder / "sent"), "hello");
+}
+
+TEST(Server, KnowsWhatThisMachineAloneCanReach) {
+    for (const char* local : {"127.0.0.1", "127.1.2.3", "::1"}) EXPECT_TRUE(isLoopback(local)) << local;
+    for (const char* other : {"0.0.0.0", "192.168.1.2", "::", "localhost", ""})
+        EXPECT_FALSE(isLoopback(other)) << other;
 }
 
 TEST(Server, EndsWithConnectionsOpen) {

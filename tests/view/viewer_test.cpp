@@ -1,5 +1,6 @@
 #include "view/viewer.h"
 
+#include "base/error.h"
 #include "given_tile.h"
 #include "scratch_folder.h"
 #include "shown.h"
@@ -9,6 +10,7 @@
 #include <chrono>
 #include <filesystem>
 #include <fstream>
+#include <initializer_list>
 #include <memory>
 #include <mutex>
 #include <stop_token>
@@ -115,6 +117,83 @@ TEST(Viewer, ShowsChangesAndFailures) {
     viewer.closed(page);
     const std::lock_guard lock(mutex);
     EXPECT_GE(said.size(), 3U);
+}
+
+// What a page has sent is a further input of all pages, and goes with the viewer.
+TEST(Viewer, TakesFilesOfPages) {
+    std::filesystem::path kept;
+    {
+        const auto read = [](const std::string& path) {
+            if (path.ends_with(".json")) throw InputError("no scenes");
+            return inputAt(path);
+        };
+        Viewer viewer(
+            {test::givenTile(0.2)}, [](const std::string&) {}, read);
+        std::vector<std::shared_ptr<Page>> pages{std::make_shared<Page>(), std::make_shared<Page>()};
+        for (const auto& page : pages) {
+            viewer.opened(page);
+            EXPECT_GT(page->shown.waitFor("hello")["takes"], 1e6);
+        }
+        kept = viewer.incoming("../../C:\\prints\\.two tone\n.gcode");
+        EXPECT_EQ(kept.filename(), "two tone .gcode");
+        EXPECT_NE(viewer.incoming("two tone .gcode"), kept);
+        std::filesystem::copy_file(test::dataDir() / "gcode/two_tone.gcode", kept);
+        EXPECT_EQ(viewer.arrived(kept), "1");
+        for (const auto& page : pages)
+            EXPECT_EQ(page->shown.waitFor("files")["files"], (nlohmann::json{"tile.gcode", "two tone .gcode"}));
+        pages.front()->shown.clear();
+        viewer.received(pages.front(), R"({"type":"open","file":1})");
+        EXPECT_EQ(pages.front()->shown.waitFor("facts")["facts"]["print"]["tools"].size(), 2U);
+        const std::filesystem::path scene = viewer.incoming("scene.json");
+        std::ofstream(scene) << "{}";
+        EXPECT_THROW(viewer.arrived(scene), InputError);
+        EXPECT_FALSE(std::filesystem::exists(scene));
+        for (const auto& page : pages) viewer.closed(page);
+        EXPECT_TRUE(std::filesystem::exists(kept));
+    }
+    EXPECT_FALSE(std::filesystem::exists(kept.parent_path().parent_path()));
+    Viewer takes_none({test::givenTile(0.2)}, [](const std::string&) {});
+    EXPECT_THROW(takes_none.incoming("part.gcode"), InputError);
+}
+
+TEST(Viewer, ForgetsInputsThatNobodyLooksAt) {
+    std::mutex mutex;
+    std::vector<std::string> said;
+    Viewer viewer({inputAt((test::dataDir() / "gcode/tile.gcode").string()),
+                   inputAt((test::dataDir() / "gcode/two_tone.gcode").string()),
+                   inputAt((test::dataDir() / "gcode/tile_arcs.gcode").string())},
+                  [&](const std::string& text) {
+                      const std::lock_guard lock(mutex);
+                      said.push_back(text);
+                  });
+    const auto page = std::make_shared<Page>();
+    viewer.opened(page);
+    EXPECT_FALSE(page->shown.waitFor("facts").is_null());
+    // The files that are read when these inputs are opened one after the other.
+    const auto read = [&](std::initializer_list<int> files) {
+        {
+            const std::lock_guard lock(mutex);
+            said.clear();
+        }
+        for (const int file : files) {
+            page->shown.clear();
+            viewer.received(page, nlohmann::json{{"type", "open"}, {"file", file}}.dump());
+            EXPECT_FALSE(page->shown.waitFor("facts").is_null());
+        }
+        const std::lock_guard lock(mutex);
+        return said.size();
+    };
+    EXPECT_EQ(read({1, 0, 1, 0}), 1U);  // two stay ready
+    EXPECT_EQ(read({1, 2, 1, 2}), 1U);
+    EXPECT_EQ(read({0}), 1U);  // it was left before the others
+    EXPECT_EQ(read({2, 0}), 0U);
+    EXPECT_EQ(read({1}), 1U);
+    // An input that another page looks at stays.
+    const auto other = std::make_shared<Page>();
+    viewer.opened(other);
+    EXPECT_EQ(read({2, 1, 2, 0}), 1U);
+    viewer.closed(other);
+    viewer.closed(page);
 }
 
 // Pages come and go while their pictures are made.

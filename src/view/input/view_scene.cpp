@@ -99,6 +99,14 @@ void ViewScene::makeObjects(const PicturePlan& plan, const assemble::ReadEvents&
     build_seconds_ = watch.lap();
 }
 
+void ViewScene::forget() {
+    objects_.reset();
+    whole_.reset();
+    stage_.reset();
+    bare_light_.reset();
+    staged_ = nullptr;
+}
+
 ViewedPicture ViewScene::picture(const PicturePlan& plan, int width, int height, Light light) {
     if (!objects_->bed_height && plan.options.scene.bed)
         objects_->bed_height = shade::restingHeight(*objects_->traced.intersector);

@@ -51,6 +51,8 @@ public:
     const assemble::TracedObjects& objects() const { return objects_->traced; }
     std::shared_ptr<const assemble::TracedObjects> sharedObjects() const { return {objects_, &objects_->traced}; }
     bool empty() const { return !objects_; }
+    /// Gives back what it holds.
+    void forget();
     /// Legends, warnings and the box, for the page.
     nlohmann::json describe() const;
 

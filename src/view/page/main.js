@@ -10,6 +10,7 @@ import { OwnPicture } from "./own_picture.js";
 import { Legend } from "./legend.js";
 import { Saving } from "./saving.js";
 import { SecondPrint } from "./second_print.js";
+import { Sending } from "./sending.js";
 import { fromFragment, initial, toFragment, toMessage } from "./state.js";
 
 const picture = byId("picture");
@@ -56,6 +57,8 @@ const page = {
   get aspect() {
     return aspect;
   },
+  trouble,
+  openFile,
   /** Other values of the state. */
   change(values, moving = false) {
     Object.assign(state, values);
@@ -74,6 +77,7 @@ const motion = (page.motion = new MotionPanel(page));
 const second = new SecondPrint(page);
 const finder = new Finder(page);
 const saving = new Saving(page);
+new Sending(page);
 const answer = new Answer(page);
 
 // ---------------------------------------------------------------- asking
@@ -246,11 +250,15 @@ on("stranger", () => trouble("The server was started anew, and its page has anot
 on("hello", (detail) => {
   if (wrong) trouble(wrong);
   wrong = "";
-  setOptions(byId("file"), detail.files.map((name, n) => [name, n]));
-  nameFile(file);
+  setFiles(detail);
   if (file > 0) connection.send({ type: "open", file });
   ask(false);
 });
+on("files", setFiles);
+function setFiles({ files }) {
+  setOptions(byId("file"), files.map((name, n) => [name, n]));
+  nameFile(file);
+}
 /** One of the inputs, or the last one. */
 function nameFile(wanted) {
   const names = [...byId("file").options].map((each) => each.textContent);
@@ -260,7 +268,7 @@ function nameFile(wanted) {
   document.title = `${names[file]} · vdbview`;
   second.setFiles(names, file);
 }
-function openFile(wanted, view) {
+function openFile(wanted, view = initial()) {
   controls.reset();
   nameFile(wanted);
   setState(view);
@@ -421,7 +429,7 @@ byId("measure").addEventListener("click", () => setMeasuring(!answer.measuring))
 byId("trouble-close").addEventListener("click", () => (byId("trouble").hidden = true));
 byId("copy-command").addEventListener("click", () => copy(byId("command").textContent, "command"));
 byId("copy-link").addEventListener("click", () => copy(location.href, "link"));
-byId("file").addEventListener("change", () => openFile(Number(byId("file").value), initial()));
+byId("file").addEventListener("change", () => openFile(Number(byId("file").value)));
 function showPanels(shown) {
   byId("side").classList.toggle("closed", !shown);
   byId("panels").setAttribute("aria-expanded", String(shown));
