@@ -150,6 +150,7 @@ py::dict statedOf(const gcode::Toolpath& toolpath) {
     stated["seconds"] = py::cast(facts.seconds);
     stated["model_seconds"] = py::cast(facts.model_seconds);
     stated["grams"] = py::cast(facts.grams);
+    stated["cost"] = py::cast(facts.cost);
     stated["materials"] = py::cast(facts.materials);
     stated["nozzle_diameters"] = py::cast(facts.nozzle_diameters);
     stated["printer"] = py::cast(facts.printer);

@@ -21,7 +21,7 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "states are little endian");
 
 constexpr std::string_view kMagic = "stratum.Toolpath";
-constexpr std::uint32_t kVersion = 6;  // changes with every field
+constexpr std::uint32_t kVersion = 7;  // changes with every field
 constexpr const char* kRemedy = "; read the G-code again";
 
 /// Values one after the other, as the machine holds them. Reader has the same functions.
@@ -145,9 +145,9 @@ private:
 
 template <typename Archive, typename Facts>
 void visitStated(Archive& archive, Facts& facts) {
-    auto& [seconds, model_seconds, grams, materials, profiles, nozzles, densities, prices, printer, layer, first_layer,
-           bed, excluded, belt, belt_angle, programs_left_out] = facts;
-    archive.values(seconds, model_seconds, grams, materials, profiles, nozzles, densities, prices, printer, layer,
+    auto& [seconds, model_seconds, grams, cost, materials, profiles, nozzles, densities, prices, printer, layer,
+           first_layer, bed, excluded, belt, belt_angle, programs_left_out] = facts;
+    archive.values(seconds, model_seconds, grams, cost, materials, profiles, nozzles, densities, prices, printer, layer,
                    first_layer, bed, excluded, belt, belt_angle, programs_left_out);
 }
 
@@ -176,9 +176,9 @@ void visitTimes(Archive& archive, Times& times) {
 template <typename Archive, typename Path>
 void visitToolpath(Archive& archive, Path& toolpath) {
     auto& [beads, arcs, runs, objects, warnings, slicer, firmware, format, filament_diameter, layer_height, deposit,
-           layer_count, belt_angle, tool_colors, palette_tools, color_changes, temperatures, fans, timing, flow,
-           filament_by_tool, footer_by_tool, footer_mm, stated, extrusion_rule, firmware_reason, cut_short, filament_mm,
-           prime_mm, flushed_mm, primed_mm, extruded_mm3] = toolpath;
+           layer_count, belt_angle, tool_colors, palette_tools, color_changes, temperatures, fans, accelerations,
+           pressure_advances, timing, flow, filament_by_tool, footer_by_tool, footer_mm, stated, extrusion_rule,
+           firmware_reason, cut_short, filament_mm, prime_mm, flushed_mm, primed_mm, extruded_mm3] = toolpath;
     archive.records(beads);
     archive.each(arcs, [&archive](auto& item) {
         auto& [center_x, center_y, sweep, line] = item;
@@ -197,7 +197,7 @@ void visitToolpath(Archive& archive, Path& toolpath) {
         auto& [first_bead, tool, color, is_stated] = item;
         archive.values(first_bead, tool, color, is_stated);
     });
-    for (auto* const values : {&temperatures, &fans})
+    for (auto* const values : {&temperatures, &fans, &accelerations, &pressure_advances})
         archive.each(*values, [&archive](auto& item) {
             auto& [line, tool, value] = item;
             archive.values(line, tool, value);

@@ -9,8 +9,8 @@ class Program:
 
     def __init__(self, path):
         self.moves, self.beads, self.tops = [], [], {}
-        self.heat, self.fan = [], []  # by bead
-        heat, fan = 0.0, 0.0
+        self.heat, self.fan, self.acceleration = [], [], []  # by bead
+        heat, fan, acceleration = 0.0, 0.0, 0.0
         place, feed, layer, feature = [0.0, 0.0, 0.0], 0.0, 0, ""
         waiting = []  # moves that lead to the next bead
         travelled, outer, relative = True, False, False
@@ -31,6 +31,8 @@ class Program:
                 heat = words["S"] or heat
             if words.get("M") in (106, 107):
                 fan = words.get("S", 0) / 2.55
+            if words.get("M") == 204:
+                acceleration = words.get("P", words.get("S", acceleration))
             if words.get("G") in (90, 91):
                 relative = words["G"] == 91
             if words.get("G") not in (0, 1):
@@ -48,6 +50,7 @@ class Program:
                 length = sum((a - b) ** 2 for a, b in zip(place, target)) ** 0.5
                 self.heat.append(heat)
                 self.fan.append(fan)
+                self.acceleration.append(acceleration)
                 self.beads.append((number, layer, feature, place[:], target, length / (feed / 60)))
                 self.tops[layer] = max(self.tops.get(layer, 0), target[2])
             elif moves:

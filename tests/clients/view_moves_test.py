@@ -1,6 +1,7 @@
 """Travels, marks, layers and single moves on the viewer's page, in headless Chromium, against the program itself."""
 
 import json
+import os
 from urllib.parse import quote
 
 from run_tools import check, gcode, skip_without
@@ -177,6 +178,25 @@ def looks():
             least, most = js("return [...document.querySelectorAll('#legend .ends input')].map((e) => e.value)")
             check(not wanted or [least, most] == wanted, f"from {least} to {most}")
             check(name != "layer_time" or (least.count(":") == 2 and most.count(":") == 2), "times as a clock has them")
+        offered = "[...document.getElementById('color-by').options].map((o) => o.value)"
+        check(not {"acceleration", "pressure_advance"} & set(js(f"return {offered}")), "what the program never sets is not offered")
+    tuned = os.path.join(viewer.folder, "tuned.gcode")
+    with open(gcode("tile.gcode"), encoding="utf-8") as file:
+        text = file.read()
+    for kind, value in (("External perimeter", 800), ("Internal infill", 2500), ("Solid infill", 1200)):
+        text = text.replace(f";TYPE:{kind}\n", f";TYPE:{kind}\nM204 P{value} T5000\nM900 K{value / 1e5}\n")
+    with open(tuned, "w", encoding="utf-8") as out:
+        out.write(text + "; total filament cost = 1.25\n")
+    # What is printed before the first M204 has its value.
+    wanted = ends([each or 800 for each in Program(tuned).acceleration])
+    with drawn(tuned):
+        for name, title, these in (("acceleration", "acceleration, mm/s²", wanted),
+                                   ("pressure_advance", "pressure advance, s", [f"{float(each) / 1e5:g}" for each in wanted])):
+            js("const s = document.getElementById('color-by'); s.value = arguments[0]; s.dispatchEvent(new Event('change'))", name)
+            until(f"document.querySelector('#legend h2')?.textContent === '{title}'", f"the legend says {title}")
+            least, most = js("return [...document.querySelectorAll('#legend .ends input')].map((e) => e.value)")
+            check([least, most] == these, f"{name} from {least} to {most}, not {these}")
+        check("costs 1.25" in js("return document.getElementById('facts').textContent"), "the bar has the cost")
     with drawn(gcode("vase.gcode")):
         check(js("return [...document.getElementById('color-by').options].some((o) => o.value === 'layer_time')"), "layer times are offered")
 

@@ -133,6 +133,7 @@ TEST(Viewer, TakesFilesOfPages) {
         for (const auto& page : pages) {
             viewer.opened(page);
             EXPECT_GT(page->shown.waitFor("hello")["takes"], 1e6);
+            EXPECT_FALSE(page->shown.waitFor("facts").is_null());
         }
         kept = viewer.incoming("../../C:\\prints\\.two tone\n.gcode");
         EXPECT_EQ(kept.filename(), "two tone .gcode");

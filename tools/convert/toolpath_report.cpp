@@ -47,6 +47,7 @@ Json describeStated(const gcode::StatedFacts& stated) {
     set("seconds", stated.seconds);
     set("model_seconds", stated.model_seconds);
     set("grams", stated.grams);
+    set("cost", stated.cost);
     if (!stated.materials.empty()) facts["materials"] = stated.materials;
     if (!stated.nozzle_diameters.empty()) facts["nozzle_diameters_mm"] = stated.nozzle_diameters;
     if (!stated.printer.empty()) facts["printer"] = stated.printer;

@@ -1,5 +1,6 @@
 #include "gcode/machine/bead_recorder.h"
 
+#include "gcode/printer/machine_limits.h"
 #include "gcode/slicer/feature_names.h"
 #include "gcode/toolpath/color.h"
 
@@ -9,9 +10,16 @@
 #include <cmath>
 #include <limits>
 #include <utility>
+#include <vector>
 
 namespace stratum::gcode {
 namespace {
+
+// One that repeats what holds changes nothing.
+void setFrom(std::vector<SetValue>& values, SetValue value) {
+    if (values.empty() || values.back().tool != value.tool || values.back().value != value.value)
+        values.push_back(value);
+}
 
 // What a damaged coordinate makes of a line: hundreds of thousands of voxels around next to nothing.
 constexpr double kLong = 1000;             // mm
@@ -86,9 +94,19 @@ void BeadRecorder::heat(double tool, double temperature, std::uint32_t line) {
 
 void BeadRecorder::blow(double speed, std::uint32_t line) {
     if (!(speed >= 0)) return;
-    const auto value = static_cast<float>(std::min(speed, 100.0));
-    if (toolpath_.fans.empty() || toolpath_.fans.back().value != value)
-        toolpath_.fans.push_back({.line = line, .tool = 0, .value = value});
+    setFrom(toolpath_.fans, {.line = line, .tool = 0, .value = static_cast<float>(std::min(speed, 100.0))});
+}
+
+void BeadRecorder::accelerate(double acceleration, std::uint32_t line) {
+    const Bounds bounds = boundsOf(Limit::printing);
+    if (acceleration >= bounds.least && acceleration <= bounds.most)
+        setFrom(toolpath_.accelerations, {.line = line, .tool = 0, .value = static_cast<float>(acceleration)});
+}
+
+void BeadRecorder::advance(double tool, double seconds, std::uint32_t line) {
+    if (!(tool >= 0 && tool < 255 && seconds >= 0 && seconds <= kLongestAdvance)) return;
+    setFrom(toolpath_.pressure_advances,
+            {.line = line, .tool = static_cast<std::uint8_t>(tool), .value = static_cast<float>(seconds)});
 }
 
 void BeadRecorder::changeMix(ToolMix mix, std::uint32_t line) {

@@ -48,6 +48,10 @@ public:
     void heat(double tool, double temperature, std::uint32_t line);
     /// The fan of the part shall have this speed, in per cent.
     void blow(double speed, std::uint32_t line);
+    /// What prints shall accelerate by this, in mm/s^2.
+    void accelerate(double acceleration, std::uint32_t line);
+    /// The pressure advance of a tool, in s.
+    void advance(double tool, double seconds, std::uint32_t line);
     /// A tool lays another mix of filaments from here on.
     void changeMix(ToolMix mix, std::uint32_t line);
     const std::vector<MixChange>& mixes() const { return mixes_; }

@@ -276,10 +276,15 @@ void Machine::executeM(const Command& command) {
             return setHomeOffset(command);
         case 220:
             return setSpeedFactor(command);
+        case 204:
+            // S is for all moves, P for those that print.
+            return recorder_.accelerate(command.value(command.hasValue('S') ? 'S' : 'P') * unit_, line_);
         case 221:
             return setFlow(command);
         case 486:
             return labelObject(command);
+        case 572:
+            return setAdvance(command, 'S', 'D');  // RepRapFirmware
         case 600:
             return recorder_.changeFilament(line_);
         case 605:
@@ -287,7 +292,9 @@ void Machine::executeM(const Command& command) {
             if (carriages_.copies() && simulates_flow_)
                 warn("the flow of one nozzle is simulated (--flow-lag): the copy that M605 prints is left out");
             return;
-        case 1020:  // Bambu's machines with two nozzles
+        case 900:
+            return setAdvance(command, 'K', 'T');  // Marlin, Bambu's
+        case 1020:                                 // Bambu's machines with two nozzles
             if (command.hasValue('S')) useNumberedTool(command.value('S'));
             return;
         default:

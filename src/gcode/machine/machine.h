@@ -113,6 +113,7 @@ private:
     void warnUnreadable(const Line& line);
     void warnNoWords();
     void setHeatOrFan(const Command& command);
+    void setAdvance(const Command& command, char seconds, char tool);
     void setHomeOffset(const Command& command);
     void setVolumetric(const Command& command);
     void setSpeedFactor(const Command& command);
@@ -157,6 +158,7 @@ private:
     void recordPath(const Point& target, const std::optional<Arc>& arc, double drive, std::size_t beads_before);
 
     void setVelocityLimit(std::string_view text);
+    void setPressureAdvance(std::string_view text);
 
     double takeAxis(const Command& command, char letter, std::size_t axis) const;
     /// The stored position that RepRapFirmware's R word selects, or nullptr.

@@ -115,16 +115,15 @@ void Machine::executeMacro(const Command& command) {
         if (moves_ != nullptr && parseNumber(p, text.data() + text.size(), seconds)) moves_->wait(seconds);
     } else if (moves_ != nullptr && same(name, "PAUSE")) {
         moves_->pause(line_);
-    } else if (moves_ != nullptr && same(name, "SET_VELOCITY_LIMIT")) {
+    } else if (same(name, "SET_VELOCITY_LIMIT")) {
         setVelocityLimit(command.text);
     } else if (moves_ != nullptr && same(name, "SET_RETRACTION")) {
         moves_->retraction({.length = numberArgument(command.text, "RETRACT_LENGTH"),
                             .speed = numberArgument(command.text, "RETRACT_SPEED"),
                             .extra = numberArgument(command.text, "UNRETRACT_EXTRA_LENGTH"),
                             .recovery_speed = numberArgument(command.text, "UNRETRACT_SPEED")});
-    } else if (moves_ != nullptr && same(name, "SET_PRESSURE_ADVANCE")) {
-        if (const auto advance = numberArgument(command.text, "ADVANCE"))
-            moves_->pressureAdvance("SET_PRESSURE_ADVANCE ADVANCE=", *advance, line_);
+    } else if (same(name, "SET_PRESSURE_ADVANCE")) {
+        setPressureAdvance(command.text);
     } else if (isProse(command.text) && !isStatement(name)) {
         warnNoWords();
     } else if (!isHarmlessMacro(name) && !isStatement(name)) {
@@ -133,9 +132,20 @@ void Machine::executeMacro(const Command& command) {
     }
 }
 
+void Machine::setPressureAdvance(std::string_view text) {
+    const auto advance = numberArgument(text, "ADVANCE");
+    if (!advance) return;
+    const auto extruder = argument(text, "EXTRUDER");  // "extruder" is the first
+    recorder_.advance(static_cast<double>(extruder ? trailingNumber(*extruder) : tool_), *advance, line_);
+    if (moves_ != nullptr) moves_->pressureAdvance("SET_PRESSURE_ADVANCE ADVANCE=", *advance, line_);
+}
+
 void Machine::setVelocityLimit(std::string_view text) {
+    const auto acceleration = numberArgument(text, "ACCEL");
+    if (acceleration) recorder_.accelerate(*acceleration, line_);
+    if (moves_ == nullptr) return;
     moves_->velocityLimit({.velocity = numberArgument(text, "VELOCITY"),
-                           .acceleration = numberArgument(text, "ACCEL"),
+                           .acceleration = acceleration,
                            .cruise_ratio = numberArgument(text, "MINIMUM_CRUISE_RATIO"),
                            .corner_velocity = numberArgument(text, "SQUARE_CORNER_VELOCITY")},
                           line_);

@@ -520,6 +520,12 @@ void Machine::setFlow(const Command& command) {
     flow_[tool] = percent / 100 * all_flow_;
 }
 
+void Machine::setAdvance(const Command& command, char seconds, char tool) {
+    if (command.hasValue(seconds))
+        recorder_.advance(command.hasValue(tool) ? command.value(tool) : static_cast<double>(tool_),
+                          command.value(seconds), line_);
+}
+
 void Machine::setHeatOrFan(const Command& command) {
     if (command.code == 104 || command.code == 109) {
         if (!command.hasValue('S') && !command.hasValue('R')) return;

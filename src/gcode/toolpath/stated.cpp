@@ -155,6 +155,11 @@ void StatedReader::pair(std::string_view key, std::string_view value) {
         }
     } else if (key == "filament used [g]") {
         if (const auto grams = sum(value); grams && !total_grams_) facts_.grams = grams;
+    } else if (key == "total filament cost" || key == "filament cost") {
+        // 0: nobody has given a price.
+        const bool total = key.starts_with("total");
+        if (const auto cost = sum(value); cost && *cost > 0 && (total || !total_cost_)) facts_.cost = cost;
+        total_cost_ = total_cost_ || total;
     } else if (key == "filament_type") {
         split(value, ";,", [this](std::size_t tool, std::string_view name) { setMaterial(tool, name); });
     } else if (key == "filament_settings_id") {
@@ -201,6 +206,8 @@ void StatedReader::sentence(std::string_view key, std::string_view value) {
         facts_.model_seconds = parseDuration(value);
     } else if (key == "total filament weight [g]" || key == "Plastic weight") {
         if (const auto grams = sum(value)) facts_.grams = grams;
+    } else if (key == "Material cost") {  // Simplify3D's
+        if (const auto cost = sum(value); cost && *cost > 0) facts_.cost = cost;
     } else if (key == "machine_type" || key == "TARGET_MACHINE.NAME" || key == "Target" || key == "Printer" ||
                key == "Machine Name" || key == "MachineType") {  // the last: WEEDO
         if (!value.empty()) facts_.printer = value;

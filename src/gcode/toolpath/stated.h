@@ -23,6 +23,7 @@ struct StatedFacts {
     std::optional<double> seconds;             ///< of the whole job, warming up included where the slicer counts it
     std::optional<double> model_seconds;       ///< of the printing alone (BambuStudio)
     std::optional<double> grams;               ///< all filament
+    std::optional<double> cost;                ///< of all filament, in the user's currency
     std::vector<std::string> materials;        ///< as the slicer names them, e.g. "PLA"
     std::vector<std::string> profiles;         ///< names of the filaments' settings, e.g. "Generic PLA Silk @MK4"
     std::vector<double> nozzle_diameters;      ///< mm
@@ -64,6 +65,7 @@ private:
     std::optional<double> first_share_;  // of the layer height
     std::array<double, 2> bed_sides_{};  // mm; 0: not stated
     bool total_grams_ = false;           // the sum is stated, not only its parts
+    bool total_cost_ = false;            // the same
 };
 
 /// Seconds of "1d 2h 3m 4s", "1h:20m:36s", "0 hours 43 minutes", "332.83 minutes", "806s" or a bare number of seconds;

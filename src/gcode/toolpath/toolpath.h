@@ -182,6 +182,8 @@ struct Toolpath {
     std::vector<ColorChange> color_changes;   ///< in print order
     std::vector<SetValue> temperatures;       ///< degrees Celsius of the nozzles, as the program asks for them
     std::vector<SetValue> fans;               ///< per cent, of the fan that cools the part
+    std::vector<SetValue> accelerations;      ///< mm/s^2, of moves that print, as the program asks for them
+    std::vector<SetValue> pressure_advances;  ///< s, of the extruders, as the program asks for them
     std::vector<BeadTiming> timing;           ///< by bead; empty unless its motion was planned
     std::vector<BeadFlow> flow;               ///< by bead; empty unless it was simulated
     std::vector<double> filament_by_tool;     ///< mm as the file counts it, by T number; may be short

@@ -26,8 +26,11 @@ using Json = nlohmann::json;
 std::vector<std::string_view> attributesOf(const gcode::Toolpath* print) {
     std::vector<std::string_view> names = voxelize::attributeNames();
     std::erase_if(names, [print](std::string_view name) {
-        return name == "overfill" || (print != nullptr && ((name == "temperature" && print->temperatures.empty()) ||
-                                                           (name == "fan" && print->fans.empty())));
+        if (name == "overfill") return true;
+        if (print == nullptr) return false;
+        return (name == "temperature" && print->temperatures.empty()) || (name == "fan" && print->fans.empty()) ||
+               (name == "acceleration" && print->accelerations.empty()) ||
+               (name == "pressure_advance" && print->pressure_advances.empty());
     });
     return names;
 }
@@ -62,6 +65,7 @@ Json factsOf(const gcode::Toolpath& toolpath) {
     if (!toolpath.stated.excluded.empty()) facts["excluded"] = toolpath.stated.excluded;
     if (toolpath.stated.seconds) facts["seconds"] = *toolpath.stated.seconds;
     if (toolpath.stated.grams) facts["grams"] = *toolpath.stated.grams;
+    if (toolpath.stated.cost) facts["cost"] = *toolpath.stated.cost;
     return facts;
 }
 

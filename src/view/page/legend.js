@@ -3,9 +3,10 @@ import { clock, secondsOf } from "./answer.js";
 import { withOrWithout } from "./state.js";
 import { byId, checkbox, element, follow, renew, setOptions, swatch } from "./elements.js";
 
-const UNITS = { "mm^3/s": "mm³/s", C: "°C", s: "h:min:s" };
+const UNITS = { "mm^3/s": "mm³/s", "mm/s^2": "mm/s²", C: "°C" };
 const BARS = 32;
-const number = (value, unit) => (unit === "s" ? clock(value) : Number(value.toPrecision(4)).toString());
+const isTime = (unit) => unit === "h:min:s";
+const number = (value, unit) => (isTime(unit) ? clock(value) : Number(value.toPrecision(4)).toString());
 
 export class Legend {
   #place = byId("legend");
@@ -29,10 +30,11 @@ export class Legend {
     const old = this.#legends.flatMap((each) => each.entries);
     const gone = ({ title, entries }) => old.filter(({ name }) => title === "feature" && this.page.state.hidden_features.includes(name) && !entries.some((each) => each.name === name));
     const place = ({ name }) => [...this.#shares.keys()].indexOf(name);
-    this.#legends = legends.map((each) => ({ ...each, entries: [...each.entries, ...gone(each)].sort((a, b) => place(a) - place(b)) }));
+    const unitOf = ({ title, unit }) => (unit === "s" && title !== "pressure_advance" ? "h:min:s" : unit);
+    this.#legends = legends.map((each) => ({ ...each, unit: unitOf(each), entries: [...each.entries, ...gone(each)].sort((a, b) => place(a) - place(b)) }));
     this.#place.hidden = legends.length === 0;
     const title = ({ title, unit }) => element("h2", {}, [title.replace("_", " "), UNITS[unit] ?? unit].filter(Boolean).join(", "));
-    byId("legend-title").replaceChildren(...legends.slice(0, 1).map(title));
+    byId("legend-title").replaceChildren(...this.#legends.slice(0, 1).map(title));
     renew(byId("legend-of"), ...this.#legends.flatMap((each, n) => [...(n ? [title(each)] : []), ...(each.ramp.length ? this.#scale(each) : [this.#list(each)])]));
     this.weigh();
   }
@@ -44,9 +46,9 @@ export class Legend {
       const input = element("input", { value: number(value, unit), ariaLabel: n ? "Most" : "Least" });
       input.addEventListener("change", () => {
         const text = input.value.trim();
-        const typed = unit === "s" ? secondsOf(text) : Number(text.replace(",", ".") || NaN);
+        const typed = isTime(unit) ? secondsOf(text) : Number(text.replace(",", ".") || NaN);
         const range = n ? [least, typed] : [typed, most]; // what was not typed keeps its digits
-        const wrong = !(Math.abs(typed) <= 1e9) ? `“${text}” is no ${unit === "s" ? "time: write it as 0:10:00" : "number up to 1e9"}.` : range[0] < range[1] ? "" : "The lower end comes first.";
+        const wrong = !(Math.abs(typed) <= 1e9) ? `“${text}” is no ${isTime(unit) ? "time: write it as 0:10:00" : "number up to 1e9"}.` : range[0] < range[1] ? "" : "The lower end comes first.";
         told.textContent = wrong;
         if (wrong) input.value = number(value, unit);
         else this.page.change({ color_range: range });

@@ -318,7 +318,7 @@ let generation; // of its file
 function tellFacts() {
   const seconds = print?.seconds ? clock(print.seconds) : motion.planned && `${clock(motion.planned)} planned`;
   byId("facts").title = byId("facts").textContent = print
-    ? [seconds, print.grams && `${print.grams.toFixed(1)} g`, `${(print.filament_mm / 1000).toFixed(2)} m of filament`, `${print.layers} layers`, `${print.height_mm.toFixed(2).replace(/0$/, "")} mm high`, print.slicer].filter(Boolean).join(" · ")
+    ? [seconds, print.grams && `${print.grams.toFixed(1)} g`, print.cost && `costs ${print.cost.toFixed(2)}`, `${(print.filament_mm / 1000).toFixed(2)} m of filament`, `${print.layers} layers`, `${print.height_mm.toFixed(2).replace(/0$/, "")} mm high`, print.slicer].filter(Boolean).join(" · ")
     : "";
 }
 on("facts", ({ facts }) => {

@@ -59,17 +59,17 @@ std::vector<openvdb::Vec3f> colorsOfBeads(const gcode::Toolpath& toolpath) {
     return colors;
 }
 
-// By bead: the value of its tool, or of all tools, that was set last. A tool that is used before its own was set has
-// the first one that is set.
+// By bead: the value of its tool, or of all tools, that was set last. What is used before its own was set has the first
+// one that is set, or `before`.
 std::vector<float> valuesOfBeads(const gcode::Toolpath& toolpath, const std::vector<gcode::SetValue>& set, bool by_tool,
-                                 std::string_view what) {
+                                 std::string_view what, std::optional<float> before = std::nullopt) {
     if (set.empty())
         throw InputError(
             fmt::format("the program never sets {}; print start macros may do so where no file tells it; "
                         "choose another attribute",
                         what));
     std::array<float, 256> of_tool{};
-    of_tool.fill(by_tool ? set.front().value : 0);
+    of_tool.fill(before.value_or(set.front().value));
     for (auto first = set.rbegin(); by_tool && first != set.rend(); ++first) of_tool[first->tool] = first->value;
     std::vector<float> values;
     values.reserve(toolpath.beads.size());
@@ -140,7 +140,15 @@ std::vector<float> temperatures(const gcode::Toolpath& toolpath) {
 }
 
 std::vector<float> fans(const gcode::Toolpath& toolpath) {
-    return valuesOfBeads(toolpath, toolpath.fans, false, "a fan");
+    return valuesOfBeads(toolpath, toolpath.fans, false, "a fan", 0.0F);  // off until then
+}
+
+std::vector<float> accelerations(const gcode::Toolpath& toolpath) {
+    return valuesOfBeads(toolpath, toolpath.accelerations, false, "an acceleration");
+}
+
+std::vector<float> pressureAdvances(const gcode::Toolpath& toolpath) {
+    return valuesOfBeads(toolpath, toolpath.pressure_advances, true, "a pressure advance");
 }
 
 std::int32_t layerOf(const gcode::Run& run) { return static_cast<std::int32_t>(run.layer); }
@@ -174,6 +182,8 @@ constexpr std::array<Facts, kAttributeCount> kFacts{{
     {"layer_time", kNumber, "s", true, nullptr, layerTimes},
     {"temperature", kNumber, "C", false, nullptr, temperatures},  // the font of legends is ASCII
     {"fan", kNumber, "%", false, nullptr, fans},
+    {"acceleration", kNumber, "mm/s^2", false, nullptr, accelerations},
+    {"pressure_advance", kNumber, "s", false, nullptr, pressureAdvances},
     {"color", AttributeKind::color, "", false, nullptr, nullptr},
 }};
 

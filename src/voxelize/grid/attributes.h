@@ -27,10 +27,12 @@ enum class Attribute : std::uint8_t {
     speed,     ///< float: mm/s, the bead's length over its time (Toolpath::timing); without a plan, the programmed one
     flow,      ///< float: mm^3/s, mean of the simulated flow (Toolpath::flow); without it, section times speed
     overfill,  ///< float: share of the bead's plastic that has no place in its layer: overfillOfBeads()
-    layer_time,   ///< float: seconds that its layer takes, see gcode::layerSeconds()
-    temperature,  ///< float: degrees Celsius of the nozzle, as the program asks for them
-    fan,          ///< float: per cent, of the fan that cools the part
-    color,        ///< Vec3f: linear sRGB of the filament from the file's settings, 0.8 gray where it has none
+    layer_time,        ///< float: seconds that its layer takes, see gcode::layerSeconds()
+    temperature,       ///< float: degrees Celsius of the nozzle, as the program asks for them
+    fan,               ///< float: per cent, of the fan that cools the part
+    acceleration,      ///< float: mm/s^2, as the program asks for it
+    pressure_advance,  ///< float: s, of the tool, as the program asks for it
+    color,             ///< Vec3f: linear sRGB of the filament from the file's settings, 0.8 gray where it has none
 };
 
 constexpr std::size_t kAttributeCount = static_cast<std::size_t>(Attribute::color) + 1;

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -341,6 +342,23 @@ TEST(Machine, RemembersTemperaturesAndTheFan) {
     EXPECT_EQ(toolpath.fans[1].value, 100.0F);
     EXPECT_EQ(toolpath.fans[1].line, 7U);
     EXPECT_EQ(toolpath.fans[2].value, 0.0F);
+}
+
+TEST(Machine, RemembersAccelerationsAndPressureAdvance) {
+    const Toolpath toolpath = readProgram(
+        "M83\nM204 P1000 T3000\nM900 K0.05\nG1 X10 E1\nM204 T2000\nM204 S500\nM204 P500\nM900 K0.05\nM572 D1 S.03\n"
+        "M900 K75\nG1 X20 E1\nSET_VELOCITY_LIMIT ACCEL=4000 VELOCITY=200\nSET_VELOCITY_LIMIT VELOCITY=300\n"
+        "SET_PRESSURE_ADVANCE EXTRUDER=extruder1 ADVANCE=0.02\nSET_PRESSURE_ADVANCE SMOOTH_TIME=0.01\n"
+        "G20\nM204 P100\nG1 X2 E.1\nM204 S-1\n");
+    const auto valuesOf = [](const std::vector<SetValue>& set) {
+        std::vector<std::tuple<std::uint32_t, int, float>> values;
+        for (const SetValue& one : set) values.emplace_back(one.line, one.tool, one.value);
+        return values;
+    };
+    using Values = std::vector<std::tuple<std::uint32_t, int, float>>;
+    EXPECT_EQ(valuesOf(toolpath.accelerations),
+              (Values{{2, 0, 1000.0F}, {6, 0, 500.0F}, {12, 0, 4000.0F}, {17, 0, 2540.0F}}));
+    EXPECT_EQ(valuesOf(toolpath.pressure_advances), (Values{{3, 0, 0.05F}, {9, 1, 0.03F}, {14, 1, 0.02F}}));
 }
 
 }  // namespace

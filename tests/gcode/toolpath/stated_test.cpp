@@ -50,6 +50,10 @@ TEST(Stated, OfSeveralSlicers) {
     EXPECT_EQ(factsOf({"filament used [g] = 3.70, 1.65"}).grams, 5.35);
     EXPECT_EQ(factsOf({"total filament used [g] = 9", "filament used [g] = 3.70, 1.65"}).grams, 9);
     EXPECT_EQ(factsOf({"Plastic weight: 8.14 g (0.02 lb)"}).grams, 8.14);
+    EXPECT_EQ(factsOf({"filament cost = 0.25, 0.5"}).cost, 0.75);
+    EXPECT_EQ(factsOf({"total filament cost = 0.30", "filament cost = 0.25, 0.5"}).cost, 0.3);
+    EXPECT_EQ(factsOf({"total filament cost = 0.00"}).cost, std::nullopt);
+    EXPECT_EQ(factsOf({"Material cost: 0.38"}).cost, 0.38);
     EXPECT_EQ(factsOf({"Extruder 1 Material:PETG"}).materials, (std::vector<std::string>{"", "PETG"}));
     EXPECT_EQ(factsOf({"printer_settings_id = mine"}).printer, "mine");
     EXPECT_EQ(factsOf({"printer_settings_id = mine", "printer_model = MK4"}).printer, "MK4");

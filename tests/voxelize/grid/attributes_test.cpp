@@ -211,6 +211,19 @@ TEST(Attributes, ValuesThatTheProgramSets) {
     EXPECT_EQ(values.number(Attribute::temperature, 2), 240.0F);
     EXPECT_EQ(values.number(Attribute::fan, 0), 0.0F);
     EXPECT_EQ(values.number(Attribute::fan, 1), 50.0F);
+
+    // An acceleration holds for all tools; what was printed before has the first one.
+    const std::vector<Attribute> motion = parseGrids("acceleration,pressure_advance");
+    EXPECT_THROW((void)BeadAttributes(toolpath, motion), InputError);
+    toolpath.accelerations = {{2, 0, 800}, {3, 0, 2000}};
+    toolpath.pressure_advances = {{1, 1, 0.25F}, {3, 0, 0.5F}};
+    const BeadAttributes set(toolpath, motion);
+    EXPECT_EQ(set.number(Attribute::acceleration, 0), 800.0F);
+    EXPECT_EQ(set.number(Attribute::acceleration, 1), 800.0F);
+    EXPECT_EQ(set.number(Attribute::acceleration, 2), 2000.0F);
+    EXPECT_EQ(set.number(Attribute::pressure_advance, 0), 0.5F);
+    EXPECT_EQ(set.number(Attribute::pressure_advance, 1), 0.25F);
+    EXPECT_EQ(attributeUnit("acceleration"), "mm/s^2");
 }
 
 TEST(Attributes, HeightsOfBeads) {
