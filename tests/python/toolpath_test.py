@@ -79,7 +79,7 @@ class Reading(unittest.TestCase):
         toolpath = stratum.read(gcode("hull.gcode"))
         self.assertIn("PrusaSlicer", toolpath.slicer)
         self.assertEqual(toolpath.layer_count, toolpath.bead_layers().max())
-        self.assertEqual(set(toolpath.stated), {"seconds", "model_seconds", "grams", "materials", "nozzle_diameters",
+        self.assertEqual(set(toolpath.stated), {"seconds", "model_seconds", "grams", "cost", "materials", "nozzle_diameters",
                                                 "printer", "layer_height", "first_layer_height"})
         self.assertGreater(toolpath.stated["seconds"], 60)
         self.assertIn("PrusaSlicer", toolpath.summary())
