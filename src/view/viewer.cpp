@@ -163,8 +163,10 @@ void Viewer::open(const std::shared_ptr<serve::Client>& client, std::size_t file
 }
 
 void Viewer::opened(const std::shared_ptr<serve::Client>& client) {
-    client->sendText(jsonText(
-        Json{{"type", "hello"}, {"version", STRATUM_VERSION}, {"files", files()}, {"takes", read_ ? SentFiles::kMostBytes : 0}}));
+    client->sendText(jsonText(Json{{"type", "hello"},
+                                   {"version", STRATUM_VERSION},
+                                   {"files", files()},
+                                   {"takes", read_ ? SentFiles::kMostBytes : 0}}));
     open(client, 0);
 }
 
