@@ -22,6 +22,7 @@
 #include <algorithm>
 #include <chrono>
 #include <csignal>
+#include <exception>
 #include <list>
 #include <optional>
 #include <utility>
@@ -165,7 +166,7 @@ private:
         if (shared_.receives) return refuse(http::status::service_unavailable, "another page sends a file; try again");
         try {
             incoming_ = shared_.handler.incoming(decoded(name));
-        } catch (const InputError& error) {
+        } catch (const std::exception& error) {
             return refuse(http::status::bad_request, error.what());
         }
         file_.emplace(std::move(*parser_));
@@ -188,7 +189,7 @@ private:
                                   std::string told;
                                   try {
                                       told = self->shared_.handler.arrived(self->incoming_);
-                                  } catch (const InputError& problem) {
+                                  } catch (const std::exception& problem) {
                                       return self->refuse(http::status::bad_request, problem.what());
                                   }
                                   self->send(http::status::ok, kText, std::move(told));

@@ -48,7 +48,7 @@ public:
     virtual void received(const std::shared_ptr<Client>& client, std::string_view text) = 0;
     virtual void closed(const std::shared_ptr<Client>& client) = 0;
 
-    // A page sends a file: PUT /TOKEN/files/NAME. What these throw as InputError is the answer that it gets.
+    // A page sends a file: PUT /TOKEN/files/NAME. What these throw is the answer that it gets.
     /// Where the file is to be written. `name` is whatever the page says.
     virtual std::filesystem::path incoming(std::string_view name);
     /// All of it is there. Returns what the page is told.

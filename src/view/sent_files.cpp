@@ -38,8 +38,10 @@ std::string nameOf(std::string_view text) {
 }
 
 fs::path ownFolder() {
-    std::string folder = (fs::temp_directory_path() / "vdbview-XXXXXX").string();
-    if (mkdtemp(folder.data()) == nullptr) throw InputError(folder + ": can't be made; name files on the command line");
+    std::error_code none;  // TMPDIR may name no folder
+    std::string folder = (fs::temp_directory_path(none) / "vdbview-XXXXXX").string();
+    if (none || mkdtemp(folder.data()) == nullptr)
+        throw InputError(folder + ": can't be made; name files on the command line");
     return folder;
 }
 

@@ -202,7 +202,7 @@ std::filesystem::path Viewer::incoming(std::string_view name) {
 std::string Viewer::arrived(const std::filesystem::path& path) {
     try {
         add(read_(path.string()));
-    } catch (const InputError&) {
+    } catch (...) {
         SentFiles::remove(path);
         throw;
     }

@@ -44,6 +44,7 @@ check(os.path.getsize(path("half.nvdb")) < 0.7 * os.path.getsize(path("float.nvd
 # Back in OpenVDB, the values are those of the .vdb.
 run("nanovdb_convert", path("float.nvdb"), path("back.vdb"))
 compare = """
+import sys
 import pyopenvdb as vdb
 ours, back = (vdb.read(name, "surface") for name in sys.argv[1:])
 assert ours.activeVoxelCount() == back.activeVoxelCount() > 1000

@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <initializer_list>
@@ -155,6 +156,19 @@ TEST(Viewer, TakesFilesOfPages) {
     EXPECT_FALSE(std::filesystem::exists(kept.parent_path().parent_path()));
     Viewer takes_none({test::givenTile(0.2)}, [](const std::string&) {});
     EXPECT_THROW(takes_none.incoming("part.gcode"), InputError);
+}
+
+TEST(SentFiles, WithoutAFolderForThemTheyAreRefused) {
+    const char* const set = std::getenv("TMPDIR");
+    const std::string before = set == nullptr ? "" : set;
+    ::setenv("TMPDIR", "/nowhere/at/all", 1);
+    SentFiles files;
+    EXPECT_THROW((void)files.place("part.gcode"), InputError);
+    if (set == nullptr)
+        ::unsetenv("TMPDIR");
+    else
+        ::setenv("TMPDIR", before.c_str(), 1);
+    EXPECT_EQ(files.place("part.gcode").filename(), "part.gcode");
 }
 
 TEST(Viewer, ForgetsInputsThatNobodyLooksAt) {

@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <random>
 #include <set>
@@ -38,8 +39,16 @@ std::vector<std::string_view> attributesOf(const gcode::Toolpath* print) {
 Json factsOf(const gcode::Toolpath& toolpath) {
     Json features = Json::array();
     const auto totals = gcode::featureTotals(toolpath);
+    // Prime lines, which are in layer 0, are not drawn.
+    std::array<bool, gcode::kFeatureCount> drawn{};
+    std::set<int> tools;
+    for (const gcode::Bead& bead : toolpath.beads)
+        if (const gcode::Run& run = toolpath.runOf(bead); run.layer > 0) {
+            drawn[static_cast<std::size_t>(run.feature)] = true;
+            tools.insert(run.tool);
+        }
     for (std::size_t n = 0; n < totals.size(); ++n)
-        if (totals[n].beads > 0)
+        if (drawn[n])
             features.push_back({{"name", gcode::featureName(static_cast<gcode::Feature>(n))},
                                 {"length_mm", totals[n].length},
                                 {"volume_mm3", totals[n].volume}});
@@ -50,8 +59,6 @@ Json factsOf(const gcode::Toolpath& toolpath) {
         objects.push_back({{"number", 0}, {"name", "no object"}});
     for (std::size_t n = 1; n < toolpath.objects.size(); ++n)
         objects.push_back({{"number", n}, {"name", toolpath.objects[n].substr(0, 200)}});
-    std::set<int> tools;
-    for (const gcode::Run& run : toolpath.runs) tools.insert(run.tool);
     const voxelize::Placement lies = voxelize::placementOf(toolpath);
     double highest = 0.0;
     for (const gcode::Bead& bead : toolpath.beads)
