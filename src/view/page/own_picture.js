@@ -9,6 +9,7 @@ import { release } from "./webgl.js";
 
 const ALL = 0xffffffff;
 const NOT_HERE = "the beads are not here yet";
+const FEW = 200000; // beads that can be sought in a picture whatever draws them; of a million that takes half a second without a GPU
 const STEP = 30; // ms of a picture at rest after which others may have their turn
 const tints = KINDS.map(([, hex]) => [1, 3, 5].map((n) => parseInt(hex.slice(n, n + 2), 16) / 255));
 
@@ -231,7 +232,8 @@ export class OwnPicture extends EventTarget {
     const { quick } = this.#pace;
     const turn = this.#frames++ % 4;
     if (!quick) renderer.drawAllBeads();
-    const seek = (quick || this.#pace.fast) && renderer.hasMoved(camera);
+    const bounded = quick || this.#pace.fast || this.table.count <= FEW;
+    const seek = bounded && renderer.hasMoved(camera);
     if (quick) renderer.drawQuick(camera, state, turn === 0, seek);
     else {
       renderer.collect(camera, state, 0, true, seek);

@@ -11,14 +11,14 @@ const LEAST = 4 / STEPS;
 export class Pace {
   scale = 1; // of each side
   quick = false;
-  fast = false; // as at rest, in the time of a frame
+  fast = false; // a picture as at rest is known not to be slow
   #slow = 0; // of pictures as at rest, one after the other
   #last = 0; // ms of the last quick one
 
   /** A part of a picture at rest took so long, ms. `begins`: it is the first, which has all that was seen before. */
   rested(time, begins = true) {
     if (this.quick) return;
-    if (begins) this.fast = time < GOAL;
+    if (begins) this.fast = time <= SLOW;
     this.#slow = time > SLOW ? this.#slow + 1 : 0;
     this.quick = this.#slow >= 2; // a program may have been compiled
     if (this.quick) this.scale = START;
