@@ -343,7 +343,7 @@ def nozzle():
 def dropped():
     """A file that is dropped on the page, or chosen, is a further input; the finished picture is that of its command."""
     name = "two tone (1).gcode"
-    drop = """const [name, text, done] = arguments;
+    drop = """const [name, text] = arguments;
               const files = new DataTransfer();
               files.items.add(new File([text], name));
               for (const type of ["dragover", "drop"])

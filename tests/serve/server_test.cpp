@@ -11,8 +11,6 @@
 #include <chrono>
 #include <ctime>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <string>
 #include <string_view>
 #include <thread>
@@ -127,10 +125,18 @@ TEST(Server, RefusesPlacesThatCannotBeHad) {
     EXPECT_THROW(Server(options, {}, handler), UsageError);
 }
 
-std::string textOf(const std::filesystem::path& path) {
-    std::ifstream file(path, std::ios::binary);
-    return {std::istreambuf_iterator<char>(file), {}};
-}
+/// A server that takes files of up to a mebibyte, and writes each to the same place.
+struct TakingServer {
+    test::ScratchFolder folder;
+    test::RunningServer server{[] {
+        Limits limits;
+        limits.file_bytes = 1 << 20;
+        return limits;
+    }()};
+    const test::PageAddress& page = server.page;
+    const std::filesystem::path sent = folder / "sent";
+    TakingServer() { server.recorder.folder = folder.path(); }
+};
 
 // The headers of a file that a page sends, and what comes of it.
 std::string sending(const test::PageAddress& page, std::size_t length, std::string_view bytes) {
@@ -139,33 +145,27 @@ std::string sending(const test::PageAddress& page, std::size_t length, std::stri
 }
 
 TEST(Server, TakesFilesOfItsOwnPage) {
-    const test::ScratchFolder folder;
-    Limits limits;
-    limits.file_bytes = 1 << 20;
-    test::RunningServer server(limits);
-    const test::PageAddress& page = server.page;
+    TakingServer taking;
+    auto& [folder, server, page, sent] = taking;
     const std::string path = page.path + "files/a%20b%2Fc%zz.gcode";
-    EXPECT_EQ(server.client().get(page, path, sending(page, 5, "hello"), "PUT"), 400);  // this handler takes none
+    server.recorder.folder.clear();  // takes none
+    EXPECT_EQ(server.client().get(page, path, sending(page, 5, "hello"), "PUT"), 400);
     server.recorder.folder = folder.path();
     const std::string bytes(300000, 'x');
     test::RawClient client = server.client();
     client.send("PUT " + path + " HTTP/1.1\r\nHost: " + page.host + "\r\n" + sending(page, bytes.size(), bytes));
     EXPECT_NE(client.readUntil("is there").find("200 OK"), std::string::npos);
     EXPECT_TRUE(server.recorder.waitFor("incoming a b/c%zz.gcode"));
-    EXPECT_EQ(textOf(folder / "sent"), bytes);
+    EXPECT_EQ(test::bytesOf(sent), bytes);
     // The connection goes on; what is there is not written over.
     client.send("PUT " + path + " HTTP/1.1\r\nHost: " + page.host + "\r\n" + sending(page, 5, "hello"));
     EXPECT_NE(client.readUntil("\r\n").find(" 507 "), std::string::npos);
-    EXPECT_EQ(textOf(folder / "sent"), bytes);
+    EXPECT_EQ(test::bytesOf(sent), bytes);
 }
 
 TEST(Server, RefusesFilesOfOthers) {
-    const test::ScratchFolder folder;
-    Limits limits;
-    limits.file_bytes = 1 << 20;
-    test::RunningServer server(limits);
-    server.recorder.folder = folder.path();
-    const test::PageAddress& page = server.page;
+    TakingServer taking;
+    auto& [folder, server, page, sent] = taking;
     const std::string path = page.path + "files/part.gcode";
     EXPECT_EQ(server.client().get(page, path, "Content-Length: 5\r\n\r\nhello", "PUT"), 403);
     EXPECT_EQ(server.client().get(page, path, "Origin: http://evil.example\r\nContent-Length: 5\r\n\r\nhello", "PUT"),
@@ -173,7 +173,7 @@ TEST(Server, RefusesFilesOfOthers) {
     EXPECT_EQ(server.client().get(page, "/files/part.gcode", sending(page, 5, "hello"), "PUT"), 403);
     EXPECT_EQ(server.client().get(page, path, sending(page, 2 << 20, ""), "PUT"), 413);
     EXPECT_EQ(server.client().get(page, path, sending(page, 5, "hello"), "POST"), 413);
-    EXPECT_FALSE(std::filesystem::exists(folder / "sent"));
+    EXPECT_FALSE(std::filesystem::exists(sent));
     // Without a length it is known when too much has come.
     const std::string chunk = "10000\r\n" + std::string(0x10000, 'x') + "\r\n";
     std::string chunks = "Origin: http://" + page.host + "\r\nTransfer-Encoding: chunked\r\n\r\n";
@@ -181,16 +181,12 @@ TEST(Server, RefusesFilesOfOthers) {
     test::RawClient client = server.client();
     client.send("PUT " + path + " HTTP/1.1\r\nHost: " + page.host + "\r\n" + chunks);
     EXPECT_NE(client.readUntil("\r\n").find(" 413 "), std::string::npos);
-    EXPECT_FALSE(std::filesystem::exists(folder / "sent"));
+    EXPECT_FALSE(std::filesystem::exists(sent));
 }
 
 TEST(Server, KeepsNothingOfAFileThatIsCutShort) {
-    const test::ScratchFolder folder;
-    Limits limits;
-    limits.file_bytes = 1 << 20;
-    test::RunningServer server(limits);
-    server.recorder.folder = folder.path();
-    const test::PageAddress& page = server.page;
+    TakingServer taking;
+    auto& [folder, server, page, sent] = taking;
     const std::string head = "PUT " + page.path + "files/part.gcode HTTP/1.1\r\nHost: " + page.host + "\r\n";
     {
         test::RawClient client = server.client();
@@ -200,11 +196,11 @@ TEST(Server, KeepsNothingOfAFileThatIsCutShort) {
         EXPECT_EQ(server.client().get(page, page.path + "files/b.gcode", sending(page, 5, "hello"), "PUT"), 503);
     }
     const auto patience = steady_clock::now() + std::chrono::seconds(20);
-    while (std::filesystem::exists(folder / "sent") && steady_clock::now() < patience)
+    while (std::filesystem::exists(sent) && steady_clock::now() < patience)
         std::this_thread::sleep_for(std::chrono::milliseconds(5));
-    EXPECT_FALSE(std::filesystem::exists(folder / "sent"));
+    EXPECT_FALSE(std::filesystem::exists(sent));
     EXPECT_EQ(server.client().get(page, page.path + "files/b.gcode", sending(page, 5, "hello"), "PUT"), 200);
-    EXPECT_EQ(textOf(folder / "sent"), "hello");
+    EXPECT_EQ(test::bytesOf(sent), "hello");
 }
 
 TEST(Server, KnowsWhatThisMachineAloneCanReach) {
