@@ -227,13 +227,14 @@ def two_prints():
         text = until("(() => { const text = document.getElementById('second-info').textContent; return text.startsWith('Red') && text; })()", "what differs")
         check(text == f"Red, gone: 1 bead, {length(program.beads[gone]):.2f} m. Green, new: 1 bead, 0.01 m.", f"it says {text}")
         check(abs(js("return document.getElementById('picture').clientWidth") - width / 2) <= 1, "side by side")
-        colors = """const image = new Image(), done = arguments[1];
-            const canvas = document.getElementById(arguments[0]);
-            requestAnimationFrame(() => {
-              window.vdbviewDrawn();
-              const copy = new OffscreenCanvas(canvas.width, canvas.height).getContext("2d");
-              copy.drawImage(canvas, 0, 0);
-              const { data } = copy.getImageData(0, 0, canvas.width, canvas.height);
+        colors = """const image = new Image(), done = arguments[0];
+            window.vdbviewDrawn(true).then((url) => {
+              image.src = url;
+              return image.decode();
+            }).then(() => {
+              const copy = new OffscreenCanvas(image.width, image.height).getContext("2d");
+              copy.drawImage(image, 0, 0);
+              const { data } = copy.getImageData(0, 0, image.width, image.height);
               let [red, green, drawn] = [0, 0, 0];
               for (let n = 0; n < data.length; n += 4) {
                 red += data[n] > 2 * data[n + 1] + 20;
@@ -242,7 +243,7 @@ def two_prints():
               }
               done([red, green, drawn]);
             });"""
-        red, green, drawn_pixels = page.execute_async_script(colors, "second-beads")
+        red, green, drawn_pixels = page.execute_async_script(colors)
         check(drawn_pixels > 1000 and green > 10 and red == 0, f"green in the second: {red}, {green} of {drawn_pixels}")
         set_slider("layer-high", 1)
         until("document.getElementById('second-info').textContent.startsWith('Red, gone: 0 beads')", "nothing of layer 1 differs")

@@ -453,9 +453,10 @@ new ResizeObserver(() => {
     if (String(pixels()) !== String(shownSize)) ask(false);
   }, 120);
 }).observe(picture);
-/** For tests: the browser's own picture of the view with all its beads, as a promise of a PNG. */
-window.vdbviewDrawn = () =>
+/** For tests: the browser's own picture of the view with all its beads, or that of the second print, as a promise of a PNG. */
+window.vdbviewDrawn = (ofSecond = false) =>
   new Promise((done) => {
-    own.addEventListener("complete", () => done(byId("beads").toDataURL()), { once: true });
+    const picture = ofSecond ? second.own : own;
+    picture.addEventListener("complete", () => done(picture.canvas.toDataURL()), { once: true });
     drawOwn(false);
   });

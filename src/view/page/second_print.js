@@ -30,6 +30,10 @@ export class SecondPrint {
   get shown() {
     return this.#connection !== null;
   }
+  /** Its OwnPicture; null: none was shown yet. */
+  get own() {
+    return this.#own;
+  }
 
   /** The inputs, of which one is shown. */
   setFiles(names, file) {
