@@ -153,14 +153,43 @@ def paces():
         import(location.pathname + "pace.js").then(({ Pace }) => {
           const after = (pace, frames, time) => { for (let n = 0; n < frames; ++n) pace.took(time(pace.scale)); return pace.scale; };
           const pace = new Pace();
+          const [quick, slow] = [new Pace(), new Pace()];
+          quick.measured(60);
+          slow.measured(100);
+          const measured = [quick.quick, slow.quick, after(slow, 9, (s) => 4 * s * s)];
           const plain = [after(pace, 100, () => 60), after(pace, 1, () => 3000), after(pace, 9, () => 20)], first = pace.quick;
           done([...plain, first, after(pace, 30, (s) => 10 + 300 * s * s), pace.quick,
-                after(pace, 9, () => 900), after(pace, 30, (s) => 4 * s * s), pace.quick]);
+                after(pace, 9, () => 900), after(pace, 30, (s) => 4 * s * s), pace.quick, ...measured]);
         });""")
-    once, hiccup, on, first, slow, quick, least, fast, last = found
+    once, hiccup, on, first, slow, quick, least, fast, last, *measured = found
+    check(measured == [False, True, 1], f"quick from the first one on where a picture at rest is slow: {measured}")
     check((once, hiccup, on, least, fast) == (1, 1, 1, 0.25, 1), f"sizes of pictures: {found}")
     check((first, quick, last) == (False, True, False), f"quick pictures where others are slow: {found}")
     check(0.18 < slow <= 0.26, f"{slow} of each side takes the time of a frame")
+
+
+def turns_at_once():
+    """Where pictures at rest are slow, the first one of turning is quick and finds its programs made."""
+    slow = page.execute_cdp_cmd("Page.addScriptToEvaluateOnNewDocument", {"source": """
+        if (location.pathname.length > 1)
+          import(location.pathname + "pace.js").then(({ Pace }) => {
+            const { measured } = Pace.prototype;
+            Pace.prototype.rested = () => {};
+            Pace.prototype.measured = function () { measured.call(this, 1000); window.measured = true; };
+          });"""})
+    with viewer.drawn(gcode("tile.gcode")):
+        until("window.measured", "the picture at rest")
+        viewer.frames()
+        js("""window.linked = 0;
+              const link = WebGL2RenderingContext.prototype.linkProgram;
+              WebGL2RenderingContext.prototype.linkProgram = function (program) { ++window.linked; link.call(this, program); };
+              window.vdbviewLog.length = 0;""")
+        drag(False)
+        linked, size, width = js("return [window.linked, window.vdbviewLog.find((e) => e.kind === 'own').width, document.getElementById('picture').width]")
+        drag(True)
+        check(linked == 0, f"{linked} programs are made while the view turns")
+        check(size < width, f"{size} of {width} pixels in the first picture")
+    page.execute_cdp_cmd("Page.removeScriptToEvaluateOnNewDocument", slow)
 
 
 def comes_into_sight():
@@ -440,6 +469,7 @@ def streams():
 
 try:
     carries_nothing()
+    turns_at_once()
     comes_into_sight()
     near_by()
     quick_colors()

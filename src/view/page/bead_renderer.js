@@ -201,9 +201,7 @@ export class BeadRenderer {
    * beads that come into sight. */
   drawQuick(camera, state, known = true, seek = false) {
     const gl = this.gl;
-    const { kinds } = this.table;
-    this.quick ??= makeProgram(gl, quickVertices(kinds), quickFragments(kinds));
-    this.maker ??= makeProgram(gl, screenVertices, ribbonFragments(kinds));
+    this.#makeQuick();
     const coarse = this.coarseFor(camera, state);
     known ||= seek || this.lines.any;
     this.unknown = known ? null : [camera, state];
@@ -229,6 +227,28 @@ export class BeadRenderer {
     if (known) gl.disable(gl.DEPTH_TEST);
     this.#drawBack(values, known);
     if (known) this.lines.draw({ ...values, eye: camera.eye }, this.textures.depths);
+  }
+
+  #makeQuick() {
+    const { kinds } = this.table;
+    this.quick ??= makeProgram(this.gl, quickVertices(kinds), quickFragments(kinds));
+    this.maker ??= makeProgram(this.gl, screenVertices, ribbonFragments(kinds));
+  }
+  /** What drawQuick() needs is made, and nothing is drawn. Without a GPU half a second goes into the first ribbons. */
+  prepareQuick(camera, state) {
+    if (this.quick) return;
+    const gl = this.gl;
+    this.#makeQuick();
+    const values = { ...this.#stage(camera, state), ribbons: RIBBONS, end: 0, least: 0, near: NEAR }; // no bead is printed
+    this.#makeRibbons(Uint32Array.of(0), values);
+    this.#use(this.quick, this.quickTarget, values);
+    this.#drawBeads(this.quick, true, 0, 1);
+    gl.bindFramebuffer(gl.FRAMEBUFFER, null);
+    gl.disable(gl.DEPTH_TEST);
+    gl.enable(gl.SCISSOR_TEST);
+    gl.scissor(0, 0, 0, 0);
+    this.#drawBack(values, true);
+    gl.disable(gl.SCISSOR_TEST);
   }
 
   /** Makes the table of ribbons. */

@@ -31,6 +31,8 @@ export class OwnPicture extends EventTarget {
   #counted = {};
   #frame = 0;
   #resting = null; // camera, state and size of a picture that is not complete yet
+  #litAt = 0; // when a part of it was shown, if the next one has not begun yet
+  #due = 0; // when it may be shown again
   #frames = 0; // of those that move
   #pace = new Pace();
 
@@ -212,6 +214,10 @@ export class OwnPicture extends EventTarget {
     const waited = !anew && visible.begun;
     renderer.finish(); // what waits is not of the first part
     let [done, start, now] = [false, anew, performance.now()];
+    // To show a part may take ten times as long as to draw it: a quarter of the time is for that.
+    if (anew) this.#due = 0;
+    else if (this.#litAt) this.#due = now + 3 * (now - this.#litAt);
+    this.#litAt = 0;
     do {
       const before = now;
       done = renderer.collect(camera, state, 1, start);
@@ -220,11 +226,27 @@ export class OwnPicture extends EventTarget {
       now = performance.now();
       visible.took(now - before);
     } while (!done && now - began < STEP);
-    if (done || (visible.begun && !quick)) renderer.light(camera, state);
+    if (done || (visible.begun && !quick && now >= this.#due)) {
+      renderer.light(camera, state);
+      this.#litAt = performance.now();
+    }
     if (done || (visible.begun && !waited)) renderer.note();
     this.#pace.rested(performance.now() - began, anew);
-    this.#frame = done ? 0 : requestAnimationFrame(() => this.#complete(false));
+    this.#frame = requestAnimationFrame(() => (done ? this.#prepare() : this.#complete(false)));
     if (done) this.#tell("complete");
+  }
+  /** After a picture at rest: whether the next ones that move are to be quick ones, and what these need. */
+  #prepare() {
+    this.#frame = 0;
+    const { camera, state } = this.#resting;
+    if (!this.#pace.known) {
+      const began = performance.now();
+      this.#renderer.collect(camera, state, 0, true); // the same picture, by programs that are compiled now
+      this.#renderer.light(camera, state);
+      this.#renderer.finish();
+      this.#pace.measured(performance.now() - began);
+    }
+    if (this.#pace.quick) this.#renderer.prepareQuick(camera, state);
   }
   #drawMoving(camera, state) {
     const began = performance.now();

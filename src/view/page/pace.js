@@ -12,6 +12,7 @@ export class Pace {
   scale = 1; // of each side
   quick = false;
   fast = false; // a picture as at rest is known not to be slow
+  known = false; // whether one is
   #slow = 0; // of pictures as at rest, one after the other
   #last = 0; // ms of the last quick one
 
@@ -19,8 +20,16 @@ export class Pace {
   rested(time, begins = true) {
     if (this.quick) return;
     if (begins) this.fast = time <= SLOW;
+    this.known ||= this.fast;
     this.#slow = time > SLOW ? this.#slow + 1 : 0;
     this.quick = this.#slow >= 2; // a program may have been compiled
+    if (this.quick) this.scale = START;
+  }
+  /** A whole one as at rest takes so long, ms. */
+  measured(time) {
+    this.known = true;
+    this.fast = time <= SLOW;
+    this.quick = !this.fast;
     if (this.quick) this.scale = START;
   }
   /** A moving picture took so long, ms. */
