@@ -82,8 +82,8 @@ class ViewerPage:
 
     @contextlib.contextmanager
     def drawn(self, path, view=None, *options):
-        """The page of a print with large voxels, when it draws."""
-        with self.of(path, "--voxel-size", "0.2", *options, query="#" + quote(json.dumps(view or {}))):
+        """The page of a print with large voxels and one sample a pixel, when it draws."""
+        with self.of(path, "--voxel-size", "0.2", *options, query="#" + quote(json.dumps({"spp": 1, **(view or {})}))):
             self.drawn_here()
             yield
 
