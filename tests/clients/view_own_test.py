@@ -156,7 +156,7 @@ def paces():
           const [quick, slow] = [new Pace(), new Pace()];
           quick.measured(60);
           slow.measured(100);
-          const measured = [quick.quick, slow.quick, after(slow, 9, (s) => 4 * s * s)];
+          const measured = [quick.quick, slow.quick, after(slow, 17, (s) => 4 * s * s)];
           const plain = [after(pace, 100, () => 60), after(pace, 1, () => 3000), after(pace, 9, () => 20)], first = pace.quick;
           done([...plain, first, after(pace, 30, (s) => 10 + 300 * s * s), pace.quick,
                 after(pace, 9, () => 900), after(pace, 30, (s) => 4 * s * s), pace.quick, ...measured]);
