@@ -13,7 +13,7 @@ export class Pace {
   scale = 1; // of each side
   quick = false;
   fast = false; // a picture as at rest is known not to be slow
-  known = false; // whether one is
+  known = false; // whether they are slow or not
   #slow = 0; // of pictures as at rest, one after the other
   #last = 0; // ms of the last quick one
   #large = 1; // a size that was too slow
@@ -24,9 +24,9 @@ export class Pace {
   rested(time, begins = true) {
     if (this.quick) return;
     if (begins) this.fast = time <= SLOW;
-    this.known ||= this.fast;
     this.#slow = time > SLOW ? this.#slow + 1 : 0;
     this.quick = this.#slow >= 2; // a program may have been compiled
+    this.known ||= this.fast || this.quick;
     if (this.quick) this.scale = START;
   }
   /** A whole one as at rest takes so long, ms. */
