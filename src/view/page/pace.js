@@ -25,16 +25,17 @@ export class Pace {
     if (this.quick) return;
     if (begins) this.fast = time <= SLOW;
     this.#slow = time > SLOW ? this.#slow + 1 : 0;
-    this.quick = this.#slow >= 2; // a program may have been compiled
-    this.known ||= this.fast || this.quick;
-    if (this.quick) this.scale = START;
+    this.#choose(this.#slow >= 2); // once, a program may have been compiled
   }
   /** A whole one as at rest takes so long, ms. */
   measured(time) {
-    this.known = true;
     this.fast = time <= SLOW;
-    this.quick = !this.fast;
-    if (this.quick) this.scale = START;
+    this.#choose(!this.fast);
+  }
+  #choose(quick) {
+    this.quick = quick;
+    this.known ||= quick || this.fast;
+    if (quick) this.scale = START;
   }
   /** A moving picture took so long, ms. */
   took(time) {
